@@ -1,0 +1,195 @@
+"""From two profiles to the arrays and the contact table that the kernel reads."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from railquake.errors import InputError
+from railquake.physics.contact import hertz_table
+from railquake.physics.kernel import SCALAR, bind, cache_folder, source_hash
+from railquake.physics.profiles import FIELDS, Axis, Geometry, axis_nodes, fill_table
+
+if TYPE_CHECKING:
+    from railquake.inputs.profile import Profile
+    from railquake.inputs.wheelrail import WheelRail
+
+__all__ = ["ROLL_AXIS", "SHIFT_AXIS", "FLOOR", "build_geometry", "rail_centre", "with_table"]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+WHEEL_SPACING = 0.5e-3  # between wheel grid points along the arc, m
+RAIL_SPACING = 0.025e-3  # between rail grid points, m
+FLANGE_ANGLE = 0.2  # the flange zone begins where the wheel is steeper than this, rad
+FLOOR = 0.15  # depth below the crown at which the ground beside a rail is put, m
+STEEPEST = 40.0  # slope with which a rail's faces are carried on below the drawn head
+
+# Fine where a wheel runs, coarse where it has left the rail; see the accuracy in the docs.
+SHIFT_AXIS = Axis(fine=0.014, fine_step=0.1e-3, coarse_step=1.0e-3, end=0.130)
+ROLL_AXIS = Axis(fine=0.030, fine_step=0.5e-3, coarse_step=5.0e-3, end=0.800)
+
+
+def rail_centre(wheelrail: WheelRail, rail: Profile) -> float:
+    """Distance of the rail profile's origin from the track's centre, m: given, or by gauge."""
+    if wheelrail.rail_centre is not None:
+        return wheelrail.rail_centre
+    from railquake.inputs.profile import face_offset
+
+    assert wheelrail.gauge is not None  # the model asks for one of the two
+    return 0.5 * wheelrail.gauge - face_offset(rail, wheelrail.gauge_height)
+
+
+def build_geometry(wheelrail: WheelRail) -> Geometry:
+    """Sample both profiles for the grid method; the table is left empty.
+
+    Raises
+    ------
+    InputError
+        If the profiles fold back or never meet.
+    """
+    wheel = wheelrail.wheel.profile("wheel", f"{wheelrail.name} wheel")
+    rail = wheelrail.rail.profile("rail", f"{wheelrail.name} rail")
+    centre = rail_centre(wheelrail, rail)
+    wheel_y, wheel_z, wheel_dy, wheel_dz, wheel_curvature = _wheel_grid(wheel)
+    steep = np.abs(wheel_dz) > np.tan(FLANGE_ANGLE) * np.abs(wheel_dy)
+    inner = np.flatnonzero(steep & (wheel_y < 0.0))
+    if inner.size == 0:
+        raise InputError(
+            f"profile {wheel.name}: nowhere inside the running circle steeper than "
+            f"{FLANGE_ANGLE} rad, so it has no flange; give the whole wheel"
+        )
+    rail_start, rail_z, rail_slope, rail_curvature = _rail_grid(rail, centre)
+    hertz = hertz_table(wheelrail.youngs_modulus, wheelrail.poisson_ratio)
+    lateral = wheelrail.running_circle + wheel_y
+    rail_end = rail_start + RAIL_SPACING * (len(rail_z) - 1)
+    if lateral[-1] < rail_start or lateral[0] > rail_end:
+        raise InputError(
+            f"wheel and rail never touch: the wheel spans {lateral[0]:.4f} to {lateral[-1]:.4f} m "
+            f"from the track's centre, the rail {rail_start:.4f} to {rail_end:.4f} m; check "
+            "wheelrail.running_circle, rail_centre and gauge"
+        )
+    return Geometry(
+        lateral,
+        wheelrail.rolling_radius + wheel_z,
+        wheel_dy,
+        wheel_dz,
+        wheel_curvature,
+        int(inner[-1]) + 1,
+        rail_start,
+        RAIL_SPACING,
+        rail_z,
+        rail_slope,
+        rail_curvature,
+        hertz.stiffness,
+        hertz.area,
+        hertz.creep,
+        hertz.spin,
+        np.zeros(1),
+        len(axis_nodes(SHIFT_AXIS)),
+    )
+
+
+def _wheel_grid(wheel: Profile) -> tuple[Array, Array, Array, Array, Array]:
+    """Evenly spaced points of the wheel with tangents per point number, and curvature."""
+    arc = wheel.arc_length
+    count = int(np.ceil(arc[-1] / WHEEL_SPACING)) + 1
+    at = np.linspace(0.0, arc[-1], count)
+    step = at[1] - at[0]
+    y = PchipInterpolator(arc, wheel.y)
+    z = PchipInterpolator(arc, wheel.z)
+    nearest = np.searchsorted(0.5 * (arc[1:] + arc[:-1]), at)
+    return y(at), z(at), step * y.derivative()(at), step * z.derivative()(at), wheel.curvature[
+        nearest
+    ].copy()
+
+
+def _rail_grid(rail: Profile, centre: float) -> tuple[float, Array, Array, Array]:
+    """Height, slope and curvature of the rail, evenly spaced in y, its faces carried on down."""
+    crown = int(np.argmin(rail.z))
+    first, last = crown, crown
+    # the part of the outline that is seen from above: y strictly rising
+    while first > 0 and rail.y[first - 1] < rail.y[first] - 1e-12:
+        first -= 1
+    while last < len(rail.y) - 1 and rail.y[last + 1] > rail.y[last] + 1e-12:
+        last += 1
+    if last - first < 2:
+        raise InputError(
+            f"profile {rail.name}: folds back at its crown; y must rise from the gauge side to "
+            "the field side over the rail's head"
+        )
+    y, z = rail.y[first : last + 1], rail.z[first : last + 1] - rail.z[crown]
+    curve = PchipInterpolator(y, z)
+    beside = FLOOR / STEEPEST + 2.0 * RAIL_SPACING
+    low = np.floor((y[0] - beside) / RAIL_SPACING) * RAIL_SPACING
+    count = int(np.ceil((y[-1] + beside - low) / RAIL_SPACING)) + 1
+    at = low + RAIL_SPACING * np.arange(count)
+    inside = (at >= y[0]) & (at <= y[-1])
+    height = np.where(
+        at < y[0], z[0] + STEEPEST * (y[0] - at), z[-1] + STEEPEST * (at - y[-1])
+    )
+    slope = np.where(at < y[0], -STEEPEST, STEEPEST)
+    height[inside] = curve(at[inside])
+    slope[inside] = curve.derivative()(at[inside])
+    on_floor = height >= FLOOR
+    height[on_floor] = FLOOR
+    slope[on_floor] = 0.0
+    nearest = first + np.searchsorted(0.5 * (y[1:] + y[:-1]), at)
+    curvature = np.where(inside, rail.curvature[nearest], 0.0)
+    return centre + low, height, slope, curvature
+
+
+def with_table(geometry: Geometry) -> Geometry:
+    """The geometry with its contact table, from the cache on disk or made now by the grid method.
+
+    The cache's key is the content of the arrays, the table's axes and the physics' source.
+    """
+    digest = hashlib.sha256(source_hash().encode())
+    for part in geometry:
+        digest.update(np.ascontiguousarray(part).tobytes())
+    digest.update(repr((SHIFT_AXIS, ROLL_AXIS, FIELDS)).encode())
+    return geometry._replace(table=_table(digest.hexdigest(), _Held(geometry)))
+
+
+class _Held:
+    """Lets `lru_cache` key the table by its digest alone."""
+
+    def __init__(self, geometry: Geometry) -> None:
+        self.geometry = geometry
+
+    def __hash__(self) -> int:
+        return 0
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Held)
+
+
+@lru_cache(maxsize=8)
+def _table(digest: str, held: _Held) -> Array:
+    path = cache_folder() / "tables" / f"{digest[:32]}.npy"
+    shifts, rolls = axis_nodes(SHIFT_AXIS), axis_nodes(ROLL_AXIS)
+    size = len(shifts) * len(rolls) * 2 * FIELDS
+    try:
+        table: Array = np.load(path, allow_pickle=False)
+        if table.shape == (size,) and table.dtype == np.float64:
+            return table
+    except (OSError, ValueError):
+        pass  # absent or damaged: made again
+    table = np.empty(size)
+    bind(fill_table, SCALAR).call(shifts, rolls, held.geometry, table)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_name(f"{path.name}.{os.getpid()}.part")
+        with open(part, "wb") as file:
+            np.save(file, table)
+        os.replace(part, path)
+    except OSError:
+        pass  # a cache that cannot be written costs a second in each process, nothing more
+    return table
+
+

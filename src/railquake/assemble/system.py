@@ -1,0 +1,445 @@
+"""A scenario assembled: what the kernel needs, and nothing that it does not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal import butter
+
+from railquake.assemble import statics
+from railquake.assemble.geometry import (
+    ROLL_AXIS,
+    SHIFT_AXIS,
+    build_geometry,
+    rail_centre,
+    with_table,
+)
+from railquake.assemble.vehicle import VehicleMatrices, vehicle_matrices
+from railquake.errors import InputError
+from railquake.inputs.profile import flange_tip
+from railquake.inputs.support import AtGrade, Pier, PrescribedTrack
+from railquake.physics import boucwen, constant, creep, march, newmark, pier, state
+from railquake.physics.contact import calibrated_hysteresis, printed_hysteresis
+from railquake.physics.kernel import PYTHON, SCALAR, Kernel, Target, bind
+from railquake.physics.profiles import Geometry
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from railquake.inputs.motion import GroundMotion
+    from railquake.inputs.scenario import Scenario
+
+__all__ = ["GRAVITY", "System", "assemble"]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+Laws = dict["Callable[..., Any]", "Callable[..., Any]"]
+
+GRAVITY = 9.80665  # m/s2
+SHIFT_LIMIT = 0.127  # lateral shift that counts as derailed, m (5 in)
+ROLL_LIMIT = math.pi / 4.0  # relative roll that counts as overturned
+
+CREEP_LAWS = {
+    "she": creep.reduction_shen_hedrick_elkins,
+    "coulomb": creep.reduction_coulomb,
+    "carter": creep.reduction_carter,
+    "polach": creep.reduction_polach,
+}
+
+
+@dataclass(frozen=True)
+class System:
+    """All that a run needs.
+
+    Attributes
+    ----------
+    scenario : Scenario
+    ground : GroundMotion
+        Lateral motion, scaled.
+    vehicle : VehicleMatrices
+    start : array, shape (state rows, 1)
+        State at rest, `physics.state`.
+    constants : array, shape (constant rows, 1)
+        `physics.constant`.
+    geometry : Geometry
+        Profiles and contact table.
+    drive : array, shape (frames + 1, 2 or 8)
+        Ground acceleration (and prescribed track) at the frames' ends.
+    laws : dict
+        Laws and stages chosen for this scenario, to be bound.
+    critical_dt : float
+        Longest stable time step at static load, s.
+    static_wheel_load : float
+        Vertical load of one side's wheels together, N.
+    """
+
+    scenario: Scenario
+    ground: GroundMotion
+    vehicle: VehicleMatrices
+    start: Array
+    constants: Array
+    geometry: Geometry
+    drive: Array
+    laws: Laws
+    critical_dt: float
+    static_wheel_load: float
+
+    @property
+    def dt(self) -> float:
+        """Time step, s."""
+        return float(self.constants[constant.DT, 0])
+
+    @property
+    def frame_steps(self) -> int:
+        """Time steps in a frame."""
+        return int(self.constants[constant.FRAME_STEPS, 0])
+
+    @property
+    def frames(self) -> int:
+        """Frames in the run."""
+        return len(self.drive) - 1
+
+    def kernel(self, target: Target = SCALAR) -> Kernel:
+        """Bind `march.march` with this scenario's laws."""
+        return bind(march.march, target, self.laws, {"DOF_COUNT": len(self.vehicle.mass)})
+
+
+def assemble(scenario: Scenario) -> System:
+    """Assemble a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    InputError
+        If a file of the scenario cannot be used, wheel and rail do not meet, the hinge cannot
+        carry the standing train or the time step is above the critical one.
+    """
+    solver = scenario.solver
+    support = scenario.support
+    ground = scenario.ground_motion()
+    frame_steps = max(1, round(solver.history_step / solver.dt))
+    drive = _drive(scenario, ground, solver.dt * frame_steps)
+    matrices = vehicle_matrices(scenario.vehicle)
+    dofs = len(matrices.mass)
+    geometry = build_geometry(scenario.wheelrail)
+    laws: Laws = {creep.reduction_shen_hedrick_elkins: CREEP_LAWS[scenario.wheelrail.creep_law]}
+    if solver.contact == "table":
+        geometry = with_table(geometry)
+    else:
+        laws[march.fetch] = march.search_grid
+        laws[march.locate] = march.skip_locate
+        laws[march.interpolate] = march.skip_interpolate
+
+    S = np.zeros((state.VEHICLE + state.VEHICLE_BLOCKS * dofs, 1))
+    Q = np.zeros((constant.VEHICLE + 3 * dofs + 2 * dofs * dofs, 1))
+    q = Q[:, 0]
+    q[constant.DT] = solver.dt
+    q[constant.FRAME_STEPS] = frame_steps
+    _fill_vehicle(q, scenario, matrices)
+    _fill_contact(q, scenario)
+    _fill_filter(q, solver.lateral_force_filter, solver.dt * frame_steps)
+    load = 0.5 * float(matrices.mass[1::3].sum()) * GRAVITY
+    q[constant.STATIC_WHEEL_LOAD] = load
+
+    stiffness, hinge_law, parameters = _fill_support(q, support, scenario.vehicle.mass)
+    if isinstance(support, PrescribedTrack):
+        laws[pier.move_structure] = pier.hold_structure
+        laws[pier.move_track] = pier.follow_track
+        laws[march.begin_frame] = march.begin_frame_on_track
+    elif hinge_law is not boucwen.advance:
+        laws[boucwen.advance] = hinge_law
+    if (
+        isinstance(support, Pier)
+        and support.hinge == "bouc-wen"
+        and solver.hinge_solve == "linearised"
+    ):
+        laws[boucwen.advance] = boucwen.advance_linearised
+
+    # --- the state at rest ---------------------------------------------------------------------
+    track_map = np.zeros((3, 3))
+    track_map[:, 2] = (-q[constant.MAP_H], -q[constant.MAP_E], -q[constant.MAP_PHI])
+    track_map[0, 0] = q[constant.MAP_U]
+    S[state.ON_TRACK] = 1.0
+    S[state.LOWEST_LOAD] = load
+    S[state.PEAK_CLEARANCE] = -1.0
+    S[state.FIRST_TIME : state.FIRST_TIME + state.EVENTS] = -1.0
+    S[state.UPLIFT_END] = -1.0
+    forces = statics.contact_forces(S.copy(), Q, geometry, _contact_stages(laws, dofs))
+    pier_rest, vehicle_rest, drift, hinge_rest = statics.rest(
+        matrices.mass,
+        matrices.stiffness,
+        GRAVITY,
+        stiffness,
+        lambda moment: statics.monotonic_hinge(hinge_law, parameters, moment),
+        parameters[0],
+        track_map,
+        q[constant.REACTION],
+        forces,
+        _settlement(geometry, scenario, load),
+        lambda track: _carried(track, dofs, scenario),
+    )
+    if isinstance(support, PrescribedTrack):
+        vehicle_rest = vehicle_rest + _carried(drive[0, [2, 4, 6]], len(matrices.mass), scenario)
+    S[state.U : state.U + 3, 0] = pier_rest
+    S[state.Z], S[state.EPS], S[state.X_MAX] = hinge_rest[1:]
+    S[state.MOMENT] = _moment(hinge_law, parameters, hinge_rest)
+    S[state.VEHICLE : state.VEHICLE + dofs, 0] = vehicle_rest
+    S[state.VEHICLE + dofs : state.VEHICLE + 2 * dofs : 3, 0] = drift
+    track = drive[0, [2, 4, 6]] if isinstance(support, PrescribedTrack) else track_map @ pier_rest
+    S[state.TRACK_Y : state.TRACK_Y + 3, 0] = track
+    _settle_forces(S, Q, geometry, laws, dofs)
+
+    critical = _critical_time_step(S, Q, matrices, forces, track, solver.phi, solver.psi)
+    if solver.dt > critical:
+        raise InputError(
+            f"solver.dt: {solver.dt:g} s is above the critical time step of {critical:.3g} s "
+            "(contact stiffness and creep damping at static load); take a smaller one, "
+            f"such as {_rounded_down(0.5 * critical):g} s"
+        )
+    for array in (drive, *geometry):
+        if isinstance(array, np.ndarray):
+            array.setflags(write=False)
+    return System(
+        scenario, ground, matrices, S, Q, geometry, drive, laws, critical, load
+    )
+
+
+def _rounded_down(value: float) -> float:
+    """One significant digit, towards zero."""
+    unit = 10.0 ** math.floor(math.log10(value))
+    return math.floor(value / unit) * unit
+
+
+def _drive(scenario: Scenario, ground: GroundMotion, frame: float) -> Array:
+    """Ground acceleration at the frames' ends, by linear interpolation of the records."""
+    frames = max(1, math.ceil(ground.duration / frame - 1e-9))
+    times = frame * np.arange(frames + 1)
+    columns = [np.interp(times, ground.time, ground.acceleration)]
+    vertical = scenario.vertical_motion()
+    if vertical is None:
+        columns.append(np.zeros(frames + 1))
+    else:
+        # recorded positive up, z is positive down
+        columns.append(-np.interp(times, vertical.time, vertical.acceleration, right=0.0))
+    if isinstance(scenario.support, PrescribedTrack):
+        track = scenario.support.track_motion()
+        known = track.dt * np.arange(len(track.y))
+        for values in (track.y, track.z, track.roll):
+            curve = CubicSpline(known, values)
+            at = np.minimum(times, known[-1])
+            columns += [curve(at), np.where(times > known[-1], 0.0, curve(at, 1))]
+    return np.ascontiguousarray(np.column_stack(columns))
+
+
+def _fill_vehicle(q: Array, scenario: Scenario, matrices: VehicleMatrices) -> None:
+    mass = matrices.mass
+    n = len(mass)
+    role = np.arange(n) % 3
+    base = constant.VEHICLE
+    q[base : base + n] = 1.0 / mass
+    q[base + n : base + 2 * n] = np.where(role == 0, mass, 0.0)
+    q[base + 2 * n : base + 3 * n] = np.where(role == 1, mass, 0.0)
+    q[base + 3 * n : base + 3 * n + n * n] = matrices.stiffness.ravel()
+    q[base + 3 * n + n * n :] = matrices.damping.ravel()
+    q[constant.ZHAI_PSI] = scenario.solver.psi
+    q[constant.ZHAI_PHI] = scenario.solver.phi
+    q[constant.GRAVITY] = GRAVITY
+    q[constant.AXLES] = scenario.vehicle.axles
+    q[constant.VEHICLE_MASS] = scenario.vehicle.mass
+
+
+def _fill_contact(q: Array, scenario: Scenario) -> None:
+    wheelrail = scenario.wheelrail
+    q[constant.WHEELSET_HEIGHT] = wheelrail.rolling_radius
+    q[constant.FRICTION] = wheelrail.friction
+    q[constant.INVERSE_SPEED] = 1.0 / max(scenario.vehicle.speed, wheelrail.speed_bound)
+    if wheelrail.restitution_law == "calibrated":
+        if wheelrail.restitution <= 0.0:
+            raise InputError(
+                "wheelrail.restitution: 0 cannot be calibrated (the hysteresis would be "
+                'infinite); take a positive value or restitution_law = "hunt-crossley"'
+            )
+        q[constant.ALPHA_R] = calibrated_hysteresis(wheelrail.restitution)
+    else:
+        q[constant.ALPHA_R] = printed_hysteresis(wheelrail.restitution)
+    q[constant.ONSET_BOUND] = wheelrail.onset_rate_bound
+    q[constant.SHIFT_AXIS : constant.SHIFT_AXIS + 4] = SHIFT_AXIS
+    q[constant.ROLL_AXIS : constant.ROLL_AXIS + 4] = ROLL_AXIS
+    q[constant.REFERENCE_ROLL] = wheelrail.reference_roll
+    wheel = wheelrail.wheel.profile("wheel", f"{wheelrail.name} wheel")
+    rail = wheelrail.rail.profile("rail", f"{wheelrail.name} rail")
+    tip_y, tip_z = flange_tip(wheel)
+    q[constant.TIP_Y] = wheelrail.running_circle + tip_y
+    q[constant.TIP_Z] = wheelrail.rolling_radius + tip_z
+    crown = rail.y[int(np.argmin(rail.z))]
+    q[constant.RAIL_CENTRE] = rail_centre(wheelrail, rail) + crown
+    q[constant.SHIFT_LIMIT] = SHIFT_LIMIT
+    q[constant.ROLL_LIMIT] = ROLL_LIMIT
+
+
+def _fill_filter(q: Array, corner: float, frame: float) -> None:
+    """Second-order Butterworth low-pass on the frame means."""
+    nyquist = 0.5 / frame
+    b, a = butter(2, min(corner / nyquist, 0.99))
+    q[constant.FILTER_B0 : constant.FILTER_B0 + 5] = (*b, a[1], a[2])
+
+
+def _fill_support(
+    q: Array, support: Pier | AtGrade | PrescribedTrack, train_mass: float
+) -> tuple[Array, Callable[..., tuple[float, ...]], tuple[float, ...]]:
+    """Constants of the structure; its stiffness without hinge, the hinge's law and parameters.
+
+    At grade a column stands idle: neither ground nor train acts on it, and it does not move the
+    track.
+    """
+    if not isinstance(support, Pier):
+        q[constant.M_U : constant.M_U + 3] = 1.0
+        q[[constant.FLEX, constant.FLEX + 3, constant.FLEX + 5]] = 1.0
+        q[constant.K0] = 1.0
+        q[constant.TOLERANCE] = 1.0
+        q[constant.MAX_ITERATIONS] = 1.0
+        return np.eye(3), boucwen.advance_elastic, (1.0,) + (0.0,) * 14 + (1.0, 1.0, 1.0)
+    hinge = support.bouc_wen
+    mass = np.array([support.mass, support.base_rotational_inertia, support.rotational_inertia])
+    column = pier.stiffness_matrix(
+        support.youngs_modulus, support.second_moment_of_area, support.length, 0.0
+    )
+    initial = column.copy()
+    initial[1, 1] += hinge.k0
+    damping = pier.rayleigh_damping(mass, initial, support.damping_ratio)
+    if support.p_delta:
+        weight = (support.mass + (train_mass if support.coupled else 0.0)) * GRAVITY
+        column = column + pier.geometric_stiffness(weight, support.length)
+    effective = newmark.effective_matrix(np.diag(mass), damping, column, q[constant.DT])
+    upper = np.triu_indices(3)
+    q[constant.PIER_LOAD] = support.mass
+    q[constant.M_U : constant.M_U + 3] = mass
+    q[constant.K : constant.K + 6] = column[upper]
+    q[constant.C : constant.C + 6] = damping[upper]
+    q[constant.FLEX : constant.FLEX + 6] = np.linalg.inv(effective)[upper]
+    q[constant.MAP_U] = 1.0
+    q[constant.MAP_H] = support.track_height
+    q[constant.MAP_E] = support.track_offset
+    q[constant.MAP_PHI] = 1.0
+    q[constant.REACTION] = 1.0 if support.coupled else 0.0
+    # z of a fully yielded hinge, without damage: what the tolerance is relative to
+    yielded = (1.0 / (hinge.beta0 * (1.0 + abs(hinge.eta0)))) ** (1.0 / hinge.n)
+    parameters = (
+        hinge.k0,
+        hinge.alpha,
+        hinge.n,
+        hinge.eta0,
+        hinge.beta0,
+        hinge.rho_eps * hinge.m / (hinge.Fy * hinge.xu),
+        hinge.rho_x / hinge.xu,
+        hinge.phi,
+        hinge.delta_k,
+        hinge.delta_f,
+        hinge.sigma,
+        hinge.u,
+        hinge.eps_p,
+        hinge.rho_p,
+        hinge.m,
+        1e-6 * yielded,
+        20.0,
+    )
+    q[constant.K0 : constant.K0 + len(parameters)] = parameters
+    law = boucwen.advance_elastic if support.hinge == "elastic" else boucwen.advance
+    return column, law, parameters
+
+
+def _moment(
+    law: Callable[..., tuple[float, ...]],
+    parameters: tuple[float, ...],
+    hinge: tuple[float, float, float, float],
+) -> float:
+    """Moment of a hinge held where it is."""
+    x, z, eps, x_max = hinge
+    return float(law(x, z, z, eps, x_max, 0.0, 0.0, *parameters)[4])
+
+
+def _contact_stages(laws: Laws, dofs: int) -> Callable[[Array, Array, Geometry], None]:
+    """The kernel's contact stages as one plain function; the grid search compiled."""
+    kernel = bind(march.find_contact_forces, PYTHON, laws, {"DOF_COUNT": dofs})
+    stages: Callable[[Array, Array, Geometry], None] = kernel.call
+    return stages
+
+
+def _settlement(geometry: Geometry, scenario: Scenario, load: float) -> float:
+    """Vertical displacement of the wheelset at which the treads bear about the static load, m."""
+    from railquake.physics.profiles import zone_contact
+
+    gap, _, _, _, stiffness, _, _ = zone_contact(
+        0.0, 0.0, geometry.flange_points, len(geometry.wheel_y), geometry
+    )
+    indentation = (load / scenario.vehicle.axles / stiffness) ** (2.0 / 3.0)
+    return float(gap + scenario.wheelrail.rolling_radius + indentation)
+
+
+def _carried(track: Array, dofs: int, scenario: Scenario) -> Array:
+    """Displacements of the bodies when the undeformed car is carried with the track."""
+    y, z, roll = track
+    bodies = sorted(scenario.vehicle.bodies, key=lambda b: b.name == scenario.vehicle.wheelset)
+    moved = np.zeros(dofs)
+    for i, body in enumerate(bodies):
+        moved[3 * i : 3 * i + 3] = (y + body.height * roll, z, roll)
+    return moved
+
+
+def _settle_forces(S: Array, Q: Array, geometry: Geometry, laws: Laws, dofs: int) -> None:
+    """Fill the rows that a step expects of the one before it."""
+    hysteresis = Q[constant.ALPHA_R, 0] / Q[constant.ONSET_BOUND, 0]
+    for patch in range(4):
+        S[state.PATCH + patch * state.PATCH_ROWS + state.PATCH_HYSTERESIS, 0] = hysteresis
+    _contact_stages(laws, dofs)(S, Q, geometry)
+    S[state.WORK_TRACK : state.WORK_TRACK + 1] = 0.0
+    for old, new in ((state.TRACK_OLD, state.TRACK_FY), (state.WHEELSET_OLD, state.WHEELSET_Y)):
+        S[old : old + 3] = S[new : new + 3]
+    powers = slice(state.IMPACT_POWER, state.IMPACT_POWER + 3)
+    S[state.IMPACT_POWER_OLD : state.IMPACT_POWER_OLD + 3] = S[powers]
+    # low-pass filters start from the steady state
+    means = (
+        -S[state.FORCE_Y, 0],
+        S[state.LOAD_LEFT, 0],
+        S[state.LOAD_RIGHT, 0],
+        S[state.LATERAL_LEFT, 0],
+        S[state.LATERAL_RIGHT, 0],
+    )
+    for number, mean in enumerate(means):
+        row = state.FILTER + number * state.FILTER_ROWS
+        S[row : row + state.FILTER_ROWS] = mean
+
+
+def _critical_time_step(
+    S: Array,
+    Q: Array,
+    matrices: VehicleMatrices,
+    forces: statics.ContactForces,
+    track: Array,
+    phi: float,
+    psi: float,
+) -> float:
+    """Critical time step with the contact linearised by central differences at static load."""
+    n = len(matrices.mass)
+    stiffness = matrices.stiffness.copy()
+    damping = matrices.damping.copy()
+    position = S[state.VEHICLE + n - 3 : state.VEHICLE + n, 0].copy()
+    velocity = S[state.VEHICLE + 2 * n - 3 : state.VEHICLE + 2 * n, 0].copy()
+    for k, (by, rate) in enumerate(((1e-6, 1e-4), (1e-6, 1e-4), (1e-6, 1e-4))):
+        for matrix, move, turn in ((stiffness, by, 0.0), (damping, 0.0, rate)):
+            unit = np.zeros(3)
+            unit[k] = 1.0
+            ahead, _ = forces(position + move * unit, velocity + turn * unit, track)
+            behind, _ = forces(position - move * unit, velocity - turn * unit, track)
+            matrix[n - 3 :, n - 3 + k] -= (ahead - behind) / (2.0 * (move + turn))
+    return statics.critical_time_step(matrices.mass, stiffness, damping, phi, psi)

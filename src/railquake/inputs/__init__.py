@@ -1,0 +1,15 @@
+"""What a run is given: frozen, checked inputs in SI units that know nothing of their use.
+
+`units`      quantities such as "80 km/h" to SI numbers, the only place that knows other units
+`vehicle`    bodies, springs and dashpots, axles           Eq. 1
+`support`    pier, ground, or a track of known motion      Eqs. 9, 10
+`hinge`      the degrading pinched Bouc-Wen hinge          Eqs. 11, 12
+`wheelrail`  profiles, material, friction, creep law       Eqs. 4 to 8
+`profile`    cross-sections of wheels and rails            Eq. 4
+`motion`     ground motions: readers, scaling, spectra
+`shaking`    which ground motion, and how much of it
+`solver`     time step and methods
+`scenario`   all of it together: case files and their checks
+`presets`    published parameter sets
+`schema`     JSON Schema of a case file
+"""

@@ -1,0 +1,275 @@
+"""What all input models share: frozen, no unknown keys, and errors that a person can act on."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, ClassVar, TypeVar
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    StrictBool,
+    StrictInt,
+    StrictStr,
+    StringConstraints,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+from railquake.errors import InputError
+from railquake.inputs.units import Quantity, shown
+
+Name = Annotated[str, StringConstraints(strict=True, min_length=1, pattern=r"^\S(.*\S)?$")]
+Text = StrictStr
+Flag = StrictBool
+Integer = StrictInt
+
+ModelType = TypeVar("ModelType", bound="InputModel")
+
+
+def did_you_mean(word: str, known: Sequence[str]) -> str:
+    """Say which of the known words is nearest, or list them all.
+
+    Parameters
+    ----------
+    word : str
+        What was found.
+    known : sequence of str
+        What would have been accepted.
+    """
+    near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1)
+    listed = ", ".join(known)
+    if near:
+        best = next(k for k in known if k.lower() == near[0])
+        return f'did you mean "{best}"? (known: {listed})'
+    return f"known: {listed}"
+
+
+def toml_type(value: object) -> str:
+    """Name a value's type as the case file's author knows it."""
+    if isinstance(value, Mapping):
+        return "a table"
+    if isinstance(value, list | tuple):
+        return "a list"
+    return shown(value)
+
+
+class InputModel(BaseModel):
+    """Base of the input models: frozen, strict, with one-line errors.
+
+    Raises
+    ------
+    InputError
+        By the constructor, naming the field, what was found and what to write.
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=False
+    )
+
+    # Lists of named things may be written as tables of tables: {"car": {...}} for
+    # [{"name": "car", ...}], so that one of them can be overridden by its name.
+    _tables_by_name: ClassVar[tuple[str, ...]] = ()
+
+    def __init__(self, **data: Any) -> None:
+        """Validate the fields; see the class for their meaning."""
+        try:
+            self.__pydantic_validator__.validate_python(data, self_instance=self)
+        except ValidationError as error:
+            where = type(self).__name__
+            raise InputError(f"{where}: {one_line(error, data)}") from None
+
+    # Nested models are then validated by pydantic itself, which keeps the path of the field.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @classmethod
+    def _normalised(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """Turn other ways of writing the same thing into the fields (for subclasses)."""
+        return data
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_and_complete(cls, data: Any) -> Any:
+        """Refuse unknown and missing keys with advice, before anything else is looked at."""
+        if isinstance(data, cls):
+            return data
+        if not isinstance(data, Mapping):
+            raise PydanticCustomError(
+                "table", "must be a table, found {found}", {"found": toml_type(data)}
+            )
+        data = cls._normalised(dict(data))
+        for key in cls._tables_by_name:
+            if isinstance(data.get(key), Mapping):
+                data[key] = named_list(key, data[key])
+        for key in data:
+            if key not in cls.model_fields:
+                raise PydanticCustomError(
+                    "unknown_key",
+                    "unknown key; {advice}",
+                    {"key": str(key), "advice": did_you_mean(str(key), list(cls.model_fields))},
+                )
+        for key, field in cls.model_fields.items():
+            if field.is_required() and key not in data:
+                examples = [m.example for m in field.metadata if isinstance(m, Quantity)]
+                raise PydanticCustomError(
+                    "missing_key",
+                    "missing{advice}",
+                    {
+                        "key": key,
+                        "advice": f"; write e.g. {key} = {examples[0]}" if examples else "",
+                    },
+                )
+        return data
+
+
+def named_list(key: str, tables: Mapping[str, Any]) -> list[Any]:
+    """Turn a table of tables into a list of tables that carry their names."""
+    items: list[Any] = []
+    for name, table in tables.items():
+        if not isinstance(table, Mapping):
+            raise PydanticCustomError(
+                "table",
+                "must be a table, found {found}",
+                {"key": f"{key}.{name}", "found": toml_type(table)},
+            )
+        items.append({"name": name, **table})
+    return items
+
+
+def field_path(error: Mapping[str, Any], data: object) -> str:
+    """Write the path of the field as the case file has it: ``vehicle.bodies.car.mass``.
+
+    Parameters
+    ----------
+    error : mapping
+        One of ``ValidationError.errors()``.
+    data : object
+        What was validated; gives the names of listed things.
+    """
+    parts: list[str] = []
+    here: Any = data
+    for step in error["loc"]:
+        if isinstance(step, int):
+            name = None
+            if isinstance(here, Mapping) and step < len(here):
+                name, here = list(here.items())[step]
+            elif isinstance(here, list | tuple) and step < len(here):
+                here = here[step]
+                name = here.get("name") if isinstance(here, Mapping) else None
+            else:
+                here = None
+            if isinstance(name, str):
+                parts.append(f".{name}")
+            else:
+                parts.append(f"[{step}]")
+        else:
+            if not isinstance(here, Mapping) or (step not in here and here.get("kind") == step):
+                continue  # which member of a union was tried, which is no step of the path
+            here = here.get(step)
+            parts.append(f".{step}")
+    key = (error.get("ctx") or {}).get("key")
+    if key:
+        parts.append(f".{key}")
+    return "".join(parts).lstrip(".")
+
+
+def _reason(error: Mapping[str, Any]) -> str:
+    kind, context = error["type"], error.get("ctx") or {}
+    found = toml_type(error.get("input"))
+    if kind in ("literal_error", "enum"):
+        return f"must be {context['expected'].replace(chr(39), chr(34))}, found {found}"
+    if kind == "value_error":
+        return str(context["error"])
+    if kind == "string_type":
+        return f"must be a text, found {found}"
+    if kind == "string_pattern_mismatch" or kind == "string_too_short":
+        return f"must be a name, found {found}"
+    if kind == "bool_type":
+        return f"must be true or false, found {found}"
+    if kind == "int_type":
+        return f"must be a whole number, found {found}"
+    bounds = {
+        "greater_than_equal": ("at least", "ge"),
+        "greater_than": ("above", "gt"),
+        "less_than_equal": ("at most", "le"),
+        "less_than": ("below", "lt"),
+    }
+    if kind in bounds:
+        word, key = bounds[kind]
+        return f"must be {word} {context[key]:g}, found {found}"
+    if kind == "missing":
+        return "missing, the list is too short"
+    if kind == "too_long":
+        return f"must be a list of {context['max_length']}, found {context['actual_length']}"
+    if kind == "too_short":
+        return f"must hold at least {context['min_length']}, found {context['actual_length']}"
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        expected = context.get("expected_tags", "a known one").replace(chr(39), chr(34))
+        found = shown(context["tag"]) if "tag" in context else "none"
+        return f"kind must be one of {expected}, found {found}"
+    if kind in ("tuple_type", "list_type"):
+        return f"must be a list, found {found}"
+    message = str(error["msg"])
+    message = message[0].lower() + message[1:]
+    plain = kind in ("quantity", "unknown_key", "missing_key", "table", "inconsistent")
+    return message if plain else f"{message}, found {found}"
+
+
+def one_line(error: ValidationError, data: object) -> str:
+    """Turn pydantic's report into one line: the first problem, and where the others are.
+
+    Parameters
+    ----------
+    error : pydantic.ValidationError
+        What pydantic found.
+    data : object
+        What was validated.
+    """
+    problems = error.errors(include_url=False)
+    paths = [field_path(problem, data) for problem in problems]
+    text = f"{paths[0]}: {_reason(problems[0])}" if paths[0] else _reason(problems[0])
+    others = [path for path in dict.fromkeys(paths) if path not in ("", paths[0])]
+    if others:
+        text += f" (also wrong: {', '.join(others[:3])}{' ...' if len(others) > 3 else ''})"
+    return " ".join(text.split())
+
+
+def validated(model: type[ModelType], data: object, where: str) -> ModelType:
+    """Validate a table into a model.
+
+    Parameters
+    ----------
+    model : type of InputModel
+        The model.
+    data : object
+        The table.
+    where : str
+        File (and section) for the message.
+
+    Raises
+    ------
+    InputError
+        Naming the field, what was found and what to write.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise InputError(f"{where}: {one_line(error, data)}") from None
+
+
+def inconsistent(message: str, key: str | None = None) -> PydanticCustomError:
+    """Make the error for fields that do not fit together; for use in model validators.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong and what to do.
+    key : str, optional
+        The field, as a path inside the model.
+    """
+    context: dict[str, Any] = {"reason": message}
+    if key:
+        context["key"] = key
+    return PydanticCustomError("inconsistent", "{reason}", context)

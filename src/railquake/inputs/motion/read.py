@@ -1,0 +1,171 @@
+"""`read_motion`: a record file of any known format to a `GroundMotion`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from railquake.inputs.motion import at2, columns, cosmos, csmip, knet, smc, usc
+from railquake.inputs.motion.motion import STANDARD_GRAVITY, GroundMotion
+from railquake.inputs.motion.text import (
+    Channel,
+    Options,
+    RecordFile,
+    one_line,
+    open_record,
+    shown,
+)
+
+PLAUSIBLE_PGA = 3.0 * STANDARD_GRAVITY
+"""Above this, m/s2, a record is refused unless `allow_high_pga`: the unit is likely wrong."""
+POSSIBLE_PGA = 100.0 * STANDARD_GRAVITY
+"""Above this, m/s2, it is refused in any case."""
+PLAUSIBLE_DT = (1e-5, 0.5)
+"""Shortest and longest time step of a record, s."""
+
+
+@dataclass(frozen=True)
+class _Format:
+    name: str
+    detect: Callable[[RecordFile], bool]
+    channels: Callable[[RecordFile, Options], list[Channel]]
+
+
+# In this order: the sharper marks first, columns of numbers last.
+_FORMATS = (
+    _Format("K-NET", knet.is_knet, knet.knet_channels),
+    _Format("COSMOS", cosmos.is_cosmos, cosmos.cosmos_channels),
+    _Format("USGS SMC", smc.is_smc, smc.smc_channels),
+    _Format("USC Volume 1", usc.is_usc, usc.usc_channels),
+    _Format("CSMIP V2", csmip.is_csmip, csmip.csmip_channels),
+    _Format("PEER AT2", at2.is_at2, at2.at2_channels),
+    _Format("columns", lambda r: columns.first_row(r) is not None, columns.column_channels),
+)
+
+FORMATS = tuple(entry.name for entry in _FORMATS)
+"""Names of the formats that `read_motion` tells apart."""
+
+
+def read_motion(
+    path: str | os.PathLike[str],
+    *,
+    channel: int | str | None = None,
+    units: str | None = None,
+    dt: float | None = None,
+    allow_high_pga: bool = False,
+) -> GroundMotion:
+    """Read one component of ground motion; the format is told by the content.
+
+    Parameters
+    ----------
+    path : path
+        PEER AT2, CSMIP/CESMD V2, COSMOS v1.20, USGS SMC, K-NET, USC Volume 1 (only with `dt`),
+        or plain columns (time and acceleration, blanks, tabs, commas or semicolons).
+    channel : int or str, optional
+        Which component of a file with several: its number in the file, or its label ("UP").
+        Columns of a table are counted from 1 behind the time column, or named.
+    units : str, optional
+        Unit of acceleration, where the file does not state it: "g", "m/s2", "cm/s2", "gal" ...
+        It never overrides what the file states.
+    dt : float, optional
+        Time step, s, where the file does not state it; for unevenly sampled files the step to
+        resample to.  It never overrides what the file states.
+    allow_high_pga : bool
+        Take a record with a PGA over 3 g for what it is.
+
+    Returns
+    -------
+    GroundMotion
+        In m/s2 and s.  `notes` says what was done to the numbers and in which format they came.
+
+    Raises
+    ------
+    InputError
+        One line that names the file, the fault (with its line where it has one) and the remedy.
+    """
+    record = open_record(path)
+    options = Options(channel, units, _given_dt(record, dt))
+    entry = _format_of(record)
+    chosen = _choose(record, entry.channels(record, options), channel)
+    series = chosen.read()
+    if not PLAUSIBLE_DT[0] <= series.dt <= PLAUSIBLE_DT[1]:
+        raise record.fault(
+            f"a time step of {series.dt:g} s is implausible for a record "
+            f"({PLAUSIBLE_DT[0]:g} to {PLAUSIBLE_DT[1]:g} s); check the header or the time column"
+        )
+    if series.acceleration.size < 2:
+        raise record.fault("holds fewer than two samples")
+    peak = float(np.max(np.abs(series.acceleration)))
+    if not peak <= (POSSIBLE_PGA if allow_high_pga else PLAUSIBLE_PGA):
+        remedy = (
+            "the unit or the values are wrong"
+            if allow_high_pga
+            else "check its unit, or say allow_high_pga = true if it is real"
+        )
+        limit = (POSSIBLE_PGA if allow_high_pga else PLAUSIBLE_PGA) / STANDARD_GRAVITY
+        raise record.fault(f"PGA is {peak / STANDARD_GRAVITY:.4g} g, over {limit:g} g; {remedy}")
+    name = one_line(Path(path).stem)
+    if chosen.title:
+        name = one_line(f"{name} {chosen.title}")
+    notes = (f"format: {entry.name}", *series.notes)
+    return GroundMotion(
+        name, series.dt, series.acceleration, record.path, tuple(map(one_line, notes))
+    )
+
+
+def _given_dt(record: RecordFile, dt: float | None) -> float | None:
+    if dt is None:
+        return None
+    try:
+        value = float(dt)
+    except (TypeError, ValueError):
+        raise record.fault(f"dt = {shown(str(dt))} is not a number of seconds") from None
+    if not PLAUSIBLE_DT[0] <= value <= PLAUSIBLE_DT[1]:
+        raise record.fault(
+            f"dt = {value:g} s was given; {PLAUSIBLE_DT[0]:g} to {PLAUSIBLE_DT[1]:g} s is possible"
+        )
+    return value
+
+
+def _format_of(record: RecordFile) -> _Format:
+    if record.lines[0].lstrip().upper().startswith("UNCORRECTED ACCELEROGRAM") and not usc.is_usc(
+        record
+    ):
+        raise record.fault(
+            "is an uncorrected (Volume 1) accelerogram, which is not read; use the corrected one "
+            "(Volume 2, .V2)"
+        )
+    for entry in _FORMATS:
+        if entry.detect(record):
+            return entry
+    raise record.fault(
+        f"is none of the known formats ({', '.join(FORMATS)}): no header that tells the time "
+        "step and no row of numbers was found"
+    )
+
+
+def _choose(record: RecordFile, channels: list[Channel], wanted: int | str | None) -> Channel:
+    """The channel asked for, or the only one."""
+    listing = ", ".join(channel.title for channel in channels[:24] if channel.title)
+    if wanted is None:
+        if len(channels) == 1:
+            return channels[0]
+        raise record.fault(
+            f"holds {len(channels)} channels ({listing}); say which: channel = 1 for example"
+        )
+    text = " ".join(str(wanted).split()).lower()
+    found = [c for c in channels if text in (str(c.number), c.label.lower(), c.title.lower())]
+    if not found and len(channels) == 1 and channels[0].number is None and text == "1":
+        found = channels
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise record.fault(
+            f"channel {shown(text)} is there {len(found)} times ({listing}); split the file"
+        )
+    offer = f"it holds {listing}" if listing else "it holds a single channel: leave channel out"
+    raise record.fault(f"has no channel {shown(text)}; {offer}")

@@ -1,0 +1,363 @@
+"""What all readers of record files share: the file as lines, numbers out of lines, and faults."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from railquake.errors import InputError
+from railquake.inputs.motion import units as unit_table
+
+MAX_BYTES = 512 * 1024 * 1024
+"""A larger file is refused before it is read: no strong-motion record comes near it."""
+
+MAX_LINE = 4096
+"""Longest line, characters; it bounds the work of the header's regular expressions."""
+
+LARGEST = 1e100
+"""A larger number is taken for damage; sums and squares of the others cannot overflow."""
+
+NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eEdD][+-]?[0-9]+)?"
+"""Regular expression of one decimal number, Fortran's D exponent included."""
+
+_OF_NUMBERS = b"0123456789eEdD.+- \t"
+_NOT_IN_NUMBERS = re.compile(r"[^0-9eEdD.+\- \t]")
+_CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")
+
+
+@dataclass(frozen=True)
+class Series:
+    """One component as a reader hands it over, before any check of its size.
+
+    Parameters
+    ----------
+    dt : float
+        Time step, s.
+    acceleration : ndarray, shape (n,)
+        Acceleration, m/s2.
+    notes : tuple of str
+        Remarks for the user.
+    """
+
+    dt: float
+    acceleration: NDArray[np.float64]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A component that a file offers; its numbers are only read when `read` is called.
+
+    Parameters
+    ----------
+    number : int or None
+        The number that the file gives it.
+    label : str
+        What the file calls it ("90 DEG", "UP").
+    read : callable
+        Returns the `Series`, or raises `InputError`.
+    """
+
+    number: int | None
+    label: str
+    read: Callable[[], Series]
+
+    @property
+    def title(self) -> str:
+        """Number and label in one piece."""
+        parts = [] if self.number is None else [str(self.number)]
+        return ": ".join([*parts, self.label] if self.label else parts)
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the caller says beside the file; see `read_motion`."""
+
+    channel: int | str | None = None
+    units: str | None = None
+    dt: float | None = None
+
+
+@dataclass(frozen=True)
+class RecordFile:
+    """A text file as a list of lines; `lines[0]` is line 1 in messages."""
+
+    path: str
+    lines: list[str]
+
+    def fault(self, message: str, line: int | None = None) -> InputError:
+        """An `InputError` that names the file and, if given, the line (counted from 0 here)."""
+        place = "" if line is None else f", line {line + 1}"
+        return InputError(one_line(f"{self.path}{place}: {message}"))
+
+    def line(self, index: int) -> str:
+        """The line at an index, or a fault if the file ends before it."""
+        if index >= len(self.lines):
+            raise self.fault(f"the file ends after line {len(self.lines)}, inside its header")
+        return self.lines[index]
+
+
+def one_line(message: str) -> str:
+    """`message` with line breaks and other unprintable characters made harmless."""
+    return "".join(c if c.isprintable() else " " for c in message)
+
+
+def shown(token: str) -> str:
+    """A piece of a file, short enough for a message."""
+    return f"'{token}'" if len(token) <= 32 else f"'{token[:29]}...'"
+
+
+def open_record(path: str | os.PathLike[str]) -> RecordFile:
+    """Read a text file whole.
+
+    Raises
+    ------
+    InputError
+        If it is missing, not a regular file, not readable, empty, binary or far too large.
+    """
+    name = one_line(str(path))
+    try:
+        place = Path(path)
+        if not place.exists():
+            raise InputError(f"{name}: there is no such file; check the path")
+        if place.is_dir():
+            raise InputError(f"{name}: is a folder; name one record file in it")
+        if not place.is_file():
+            raise InputError(f"{name}: is not a regular file")
+        if place.stat().st_size > MAX_BYTES:
+            raise InputError(f"{name}: over {MAX_BYTES // 2**20} MiB, too large for a record")
+        data = place.read_bytes()
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(one_line(f"{name}: cannot be read ({reason})")) from None
+    data = data.rstrip(b"\x1a")  # DOS end-of-file mark of old records
+    if not data.strip():
+        raise InputError(f"{name}: the file is empty; fetch it again")
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise InputError(f"{name}: UTF-16 text; save it as plain text (UTF-8)")
+    if _CONTROL.search(data):
+        raise InputError(
+            f"{name}: holds binary data, not text; unpack it, or export the record as text"
+        )
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")  # older headers: degree signs, accents
+    # Not str.splitlines: it also breaks lines at characters that headers may hold.
+    text = text.replace("\r\n", "\n").replace("\r", "\n").replace("\x0c", " ")
+    lines = text.split("\n")
+    while lines and not lines[-1].strip():
+        lines.pop()
+    if not lines:
+        raise InputError(f"{name}: the file is empty; fetch it again")
+    record = RecordFile(name, lines)
+    longest = max(range(len(lines)), key=lambda index: len(lines[index]))
+    if len(lines[longest]) > MAX_LINE:
+        raise record.fault(
+            f"has {len(lines[longest])} characters, over {MAX_LINE}; this is not a record of "
+            "lines: put a few values on each",
+            longest,
+        )
+    return record
+
+
+def bad_number(token: str) -> str:
+    """What to say about a piece of text that should be a number."""
+    plain = token.strip()
+    if "*" in plain:
+        stars = plain[plain.index("*") :]
+        return f"{shown(stars)} stands for a number that did not fit its field; repair the record"
+    if plain.lower().lstrip("+-") in {"nan", "inf", "infinity", "1.#qnan", "1.#ind", "1.#inf"}:
+        return f"{shown(plain)} is not a finite number; repair or cut the record"
+    if re.fullmatch(NUMBER, plain):
+        return f"{shown(plain)} is beyond any measurement; the file is damaged"
+    if not plain:
+        return "a value is missing (empty field)"
+    return f"{shown(plain)} is not a number; the file is damaged, cut off or of another format"
+
+
+def to_float(token: str) -> float | None:
+    """One decimal number from ASCII text, or None: not 'nan', not '1_000', not infinite."""
+    plain = token.strip()
+    if not plain or not plain.isascii() or _NOT_IN_NUMBERS.search(plain):
+        return None
+    try:
+        value = float(plain.replace("D", "E").replace("d", "e"))
+    except ValueError:
+        return None
+    return value if abs(value) <= LARGEST else None
+
+
+def convert(record: RecordFile, tokens: Sequence[str], lines: Sequence[int]) -> NDArray[np.float64]:
+    """Turn tokens into numbers, or name the first bad one.
+
+    Parameters
+    ----------
+    record : RecordFile
+        For messages.
+    tokens : sequence of str
+        The numbers as text.
+    lines : sequence of int
+        The index of the line of each token; only looked at when there is a fault.
+    """
+    # The one pass over the characters keeps float() from taking 'nan', '1_000' or foreign digits.
+    joined = " ".join(tokens)
+    if joined.isascii() and not joined.encode().translate(None, _OF_NUMBERS):
+        if "d" in joined or "D" in joined:
+            tokens = [token.replace("D", "E").replace("d", "e") for token in tokens]
+        try:
+            values = np.fromiter(map(float, tokens), np.float64, len(tokens))
+        except ValueError:
+            pass
+        else:
+            if values.size == 0 or np.max(np.abs(values)) <= LARGEST:
+                return values
+    for place, token in enumerate(tokens):
+        if to_float(token) is None:
+            line = lines[place]
+            first = place
+            while first > 0 and lines[first - 1] == line:
+                first -= 1
+            # Asterisks fill their field, so they may be glued to the number before them.
+            glued = to_float(token.split("*")[0]) is not None
+            message = f"value {place - first + 1 + glued}: {bad_number(token)}"
+            raise record.fault(message, line)
+    raise record.fault("the values cannot be read as numbers")  # pragma: no cover
+
+
+def free_numbers(record: RecordFile, start: int, stop: int | None = None) -> NDArray[np.float64]:
+    """All numbers of some lines, separated by blanks."""
+    rows = [line.split() for line in record.lines[start:stop]]
+    tokens = [token for row in rows for token in row]
+    return convert(record, tokens, _LineOf(start, [len(row) for row in rows]))
+
+
+def fixed_numbers(
+    record: RecordFile, start: int, count: int, width: int, *, indent: int = 0
+) -> NDArray[np.float64]:
+    """`count` numbers in fields of `width` characters, as many to a line as there are.
+
+    The fields are right-justified, so a line whose length is no multiple of the width was cut.
+
+    Raises
+    ------
+    InputError
+        If the file ends before `count` numbers, or a field is not a finite number.
+    """
+    tokens: list[str] = []
+    per_line: list[int] = []
+    index = start
+    while len(tokens) < count:
+        if index >= len(record.lines):
+            raise record.fault(
+                f"{count} values are announced and the file ends after {len(tokens)}; "
+                "it is cut off: fetch it again"
+            )
+        line = record.lines[index].rstrip()[indent:]
+        fields = [line[at : at + width] for at in range(0, len(line), width)]
+        if not fields:
+            raise record.fault(
+                f"an empty line where value {len(tokens) + 1} of {count} should be", index
+            )
+        if len(fields[-1]) != width and to_float(fields[-1]) is not None:
+            raise record.fault(
+                f"value {len(fields)}: {shown(fields[-1])} does not fill its field of {width} "
+                "characters; the line is cut off",
+                index,
+            )
+        tokens += fields
+        per_line.append(len(fields))
+        index += 1
+    values = convert(record, tokens, _LineOf(start, per_line))
+    if len(values) != count:
+        raise record.fault(
+            f"{count} values are announced and the data's last line holds {len(values) - count} "
+            "more; the header and the data do not belong together",
+            index - 1,
+        )
+    return values
+
+
+def lines_used(count: int, per_line: int) -> int:
+    """Lines that `count` fields take."""
+    return -(-count // per_line)
+
+
+class _LineOf(Sequence[int]):
+    """Line index of each token, worked out only when a fault has to be told."""
+
+    def __init__(self, start: int, per_line: list[int]) -> None:
+        self._ends = np.cumsum(per_line) if per_line else np.zeros(0, dtype=np.int64)
+        self._start = start
+
+    def __len__(self) -> int:
+        return int(self._ends[-1]) if self._ends.size else 0
+
+    def __getitem__(self, place: int) -> int:  # type: ignore[override]
+        return self._start + int(np.searchsorted(self._ends, place, side="right"))
+
+
+def unit_of_file(
+    record: RecordFile, stated: str | None, options: Options, line: int | None = None
+) -> float:
+    """Factor to m/s2 from what the file states and what the caller says.
+
+    Either is enough; both must agree.  Nothing is assumed when neither speaks.
+    """
+    given: float | None = None
+    if options.units is not None:
+        given = unit_table.acceleration_factor(str(options.units))
+        if given is None:
+            raise record.fault(
+                f"units = {shown(str(options.units))} is not a known unit of acceleration; "
+                f"use one of {unit_table.known_units()}"
+            )
+    if stated is None:
+        if given is None:
+            raise record.fault(
+                'the file does not say in which units it is; give units = "g" (or one of '
+                f"{unit_table.known_units()})"
+            )
+        return given
+    factor = unit_table.acceleration_factor(stated)
+    if factor is None:
+        raise record.fault(
+            f"{shown(stated)} is not a known unit of acceleration "
+            f"({unit_table.known_units()}); convert the record first",
+            line,
+        )
+    if given is not None and abs(given - factor) > 1e-9 * factor:
+        raise record.fault(
+            f"the file states {shown(stated)} but units = {shown(str(options.units))} was given; "
+            "leave units out, or correct the file",
+            line,
+        )
+    return factor
+
+
+def check_dt(record: RecordFile, dt: float, options: Options, line: int | None = None) -> float:
+    """The file's time step, s, checked by itself and against the caller's `dt`."""
+    if not (np.isfinite(dt) and dt > 0.0):
+        raise record.fault(f"the time step is {dt:g} s; it must be over zero", line)
+    if options.dt is not None and abs(options.dt - dt) > 1e-6 * dt:
+        raise record.fault(
+            f"the file states a time step of {dt:g} s but dt = {options.dt:g} s was given; leave "
+            "dt out, and resample the motion afterwards if another step is wanted",
+            line,
+        )
+    return dt
+
+
+def peak_note(peak: float, stated: float, unit: str, resolution: float) -> tuple[str, ...]:
+    """A remark when the header's own peak and that of the data differ, else nothing."""
+    if abs(abs(stated) - peak) <= max(0.01 * peak, resolution):
+        return ()
+    return (f"the header gives a peak of {abs(stated):g} {unit}, the data have {peak:g} {unit}",)

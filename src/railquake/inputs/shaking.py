@@ -1,0 +1,181 @@
+"""Where the ground's motion comes from: the case file's section ``[motion]``.
+
+The motions themselves, and the readers of records, are in `railquake.inputs.motion`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+
+from railquake.errors import InputError
+from railquake.inputs._model import Flag, InputModel, Integer, Name, Text, inconsistent
+from railquake.inputs.units import Acceleration, Number, PositiveTime
+
+if TYPE_CHECKING:
+    from railquake.inputs.motion import GroundMotion
+
+
+def _synthetic_in_si(table: Any) -> dict[str, Any] | None:
+    """All parameters of a synthetic motion, defaults included, in SI units."""
+    if table is None:
+        return None
+    from railquake.inputs.motion import synthetic_from_mapping
+
+    try:
+        parameters = asdict(synthetic_from_mapping(table, "synthetic"))
+    except InputError as error:
+        # Pydantic puts the path of the field in front again.
+        where, _, reason = str(error).partition(": ")
+        raise inconsistent(reason, where.partition(".")[2] or None) from None
+    return {key: value for key, value in parameters.items() if value is not None}
+
+
+class Motion(InputModel):
+    """The ground's motion: a record's file, a synthetic motion, or the samples themselves.
+
+    The file is not read before :meth:`Scenario.ground_motion` asks for it.
+    """
+
+    record: Annotated[Name | None, Field(description="File of the lateral component")] = None
+    synthetic: Annotated[
+        dict[str, int | float] | None,
+        BeforeValidator(_synthetic_in_si),
+        WithJsonSchema({"type": "object"}),
+        Field(description='Parameters of a synthetic motion, e.g. { seed = 1, pga = "0.4 g" }'),
+    ] = None
+    acceleration: Annotated[
+        tuple[Acceleration, ...] | None,
+        Field(min_length=2, description="Lateral samples at steps of dt [m/s2]"),
+    ] = None
+    name: Annotated[Text, Field(description="What to call a motion given by its samples")] = ""
+    vertical: Annotated[
+        Name | None, Field(description="File of the vertical component, positive up")
+    ] = None
+    vertical_acceleration: Annotated[
+        tuple[Acceleration, ...] | None,
+        Field(min_length=2, description="Vertical samples at steps of dt, positive up [m/s2]"),
+    ] = None
+    scale: Annotated[
+        Number, Field(description="Factor on both components; negative mirrors the lateral one")
+    ] = 1.0
+    channel: Annotated[
+        Integer | Text | None, Field(description="Which channel of the record's file")
+    ] = None
+    vertical_channel: Annotated[
+        Integer | Text | None, Field(description="Which channel of the vertical component's file")
+    ] = None
+    units: Annotated[
+        Text | None, Field(description="Units of the files' values, where they do not say")
+    ] = None
+    dt: Annotated[
+        PositiveTime | None, Field(description="Time step, where the file does not say [s]")
+    ] = None
+    allow_high_pga: Annotated[
+        Flag, Field(description="Whether a peak above 3 g is taken as it stands")
+    ] = False
+
+    @model_validator(mode="after")
+    def _has_one_origin(self) -> Motion:
+        given = [
+            key for key in ("record", "synthetic", "acceleration") if getattr(self, key) is not None
+        ]
+        if len(given) != 1:
+            found = " and ".join(given) or "none of them"
+            raise inconsistent(f"give one of record, synthetic and acceleration, found {found}")
+        if self.vertical is not None and self.vertical_acceleration is not None:
+            raise inconsistent("give either vertical or vertical_acceleration, found both")
+        samples = (self.acceleration, self.vertical_acceleration)
+        if self.dt is None and any(values is not None for values in samples):
+            raise inconsistent('is needed with samples; write e.g. dt = "0.01 s"', "dt")
+        return self
+
+    def lateral_motion(self) -> GroundMotion:
+        """Read or make the lateral component and scale it.
+
+        Returns
+        -------
+        GroundMotion
+            Positive to the right.
+
+        Raises
+        ------
+        InputError
+            If the record's file cannot be used.
+        """
+        from railquake.inputs.motion import read_motion, synthetic_motion
+
+        if self.record is not None:
+            made = read_motion(
+                self.record,
+                channel=self.channel,
+                units=self.units,
+                dt=self.dt,
+                allow_high_pga=self.allow_high_pga,
+            )
+        elif self.synthetic is not None:
+            made = synthetic_motion(self.synthetic)
+        else:
+            assert self.acceleration is not None  # by the validator above
+            made = motion_of_samples(self.name or "samples", self.dt, self.acceleration)
+        return _scaled(made, self.scale)
+
+    def vertical_motion(self) -> GroundMotion | None:
+        """Read the vertical component and scale it.
+
+        Returns
+        -------
+        GroundMotion or None
+            Positive UP, as recorded; None if there is none.
+
+        Raises
+        ------
+        InputError
+            If its file cannot be used.
+        """
+        from railquake.inputs.motion import read_motion
+
+        if self.vertical_acceleration is not None:
+            name = f"{self.name or 'samples'} vertical"
+            made = motion_of_samples(name, self.dt, self.vertical_acceleration)
+        elif self.vertical is not None:
+            made = read_motion(
+                self.vertical,
+                channel=self.vertical_channel,
+                units=self.units,
+                dt=self.dt,
+                allow_high_pga=self.allow_high_pga,
+            )
+        else:
+            return None
+        return _scaled(made, abs(self.scale))
+
+
+def motion_of_samples(name: str, dt: float | None, samples: Sequence[float]) -> GroundMotion:
+    """Make a ground motion of plain numbers.
+
+    Parameters
+    ----------
+    name : str
+        What to call it.
+    dt : float
+        Time step [s].
+    samples : sequence of float
+        Ground acceleration [m/s2].
+    """
+    import numpy as np
+
+    from railquake.inputs.motion import GroundMotion
+
+    assert dt is not None  # checked where samples are taken in
+    return GroundMotion(name, dt, np.array(samples, dtype=np.float64))
+
+
+def _scaled(motion: GroundMotion, factor: float) -> GroundMotion:
+    if factor == 0.0:
+        return replace(motion, acceleration=0.0 * motion.acceleration)
+    scaled = motion.scaled(abs(factor))
+    return scaled if factor > 0.0 else scaled.mirrored()

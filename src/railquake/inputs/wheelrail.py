@@ -1,0 +1,285 @@
+"""Wheels on rails: profiles and where they stand, material, friction, restitution, creep law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from railquake.errors import InputError
+from railquake.inputs._model import Flag, InputModel, Name, Text, inconsistent, validated
+from railquake.inputs._toml import is_path
+from railquake.inputs.units import (
+    NonNegativeNumber,
+    Number,
+    PositiveAngle,
+    PositiveLength,
+    PositiveNumber,
+    PositivePressure,
+    PositiveSpeed,
+)
+
+if TYPE_CHECKING:
+    from railquake.inputs.profile import Profile
+
+ProfilePoint = tuple[Number, Number]
+
+
+class LineSegment(InputModel):
+    """A straight piece of a profile; (y, z) in the profile's unit."""
+
+    kind: Literal["line"]
+    start: ProfilePoint
+    end: ProfilePoint
+
+
+class ArcSegment(InputModel):
+    """A circular piece of a profile; (y, z) in the profile's unit."""
+
+    kind: Literal["arc"]
+    start: ProfilePoint
+    end: ProfilePoint
+    centre: ProfilePoint
+    radius: PositiveNumber
+    concave: Annotated[Flag, Field(description="Whether the body is hollow there")] = False
+
+
+class PolynomialSegment(InputModel):
+    """A piece z = c0 + c1 y + c2 y^2 + ... of a profile, in the profile's unit."""
+
+    kind: Literal["polynomial"]
+    coefficients: Annotated[tuple[Number, ...], Field(min_length=1)]
+    y_start: Number
+    y_end: Number
+
+
+ProfileSegment = Annotated[
+    LineSegment | ArcSegment | PolynomialSegment, Field(discriminator="kind")
+]
+
+
+class ProfileSpec(InputModel):
+    """Where a profile comes from: a built-in name, a file, or segments drawn here.
+
+    In a case file a text stands for the first two: ``wheel = "s1002"``, ``rail = "my.prr"``.
+    """
+
+    builtin: Annotated[Name | None, Field(description="A profile defined by a standard")] = None
+    file: Annotated[Name | None, Field(description="A .prw, .prr or CSV file")] = None
+    segments: Annotated[
+        tuple[ProfileSegment, ...], Field(description="Lines, arcs, polynomials, end to end")
+    ] = ()
+    unit: Annotated[
+        Literal["m", "cm", "mm", "in", "inch", "ft"], Field(description="Unit of the segments")
+    ] = "m"
+    mirror: Annotated[
+        Flag, Field(description="The segments draw one half, from the axis of symmetry")
+    ] = False
+
+    @model_validator(mode="after")
+    def _has_one_origin(self) -> ProfileSpec:
+        given = (self.builtin is not None) + (self.file is not None) + bool(self.segments)
+        if given != 1:
+            raise inconsistent(
+                "give one of builtin, file and segments, found "
+                + ("none of them" if given == 0 else "more than one")
+            )
+        return self
+
+    def profile(self, kind: Literal["wheel", "rail"], name: str) -> Profile:
+        """Make the profile.
+
+        Parameters
+        ----------
+        kind : {"wheel", "rail"}
+            What it is a section of.
+        name : str
+            What to call it where it is drawn from segments.
+
+        Returns
+        -------
+        Profile
+
+        Raises
+        ------
+        InputError
+            If there is no such built-in profile or file, it is of the other kind, or its
+            pieces do not make a profile.
+        """
+        from railquake.inputs import profile as profiles
+
+        if self.builtin is not None:
+            made = profiles.builtin_profile(self.builtin)
+        elif self.file is not None:
+            made = profiles.read_profile(self.file, kind)
+        else:
+            rows = [segment.model_dump() for segment in self.segments]
+            segments = profiles.segments_from_table(rows, self.unit, self.mirror)
+            made = profiles.profile_from_segments(kind, name, segments)
+        if made.kind != kind:
+            raise InputError(f'profile "{made.name}" is a {made.kind}, where a {kind} is needed')
+        return made
+
+
+def spec_from_text(text: str) -> dict[str, str]:
+    """Tell the name of a built-in profile from the path of a file.
+
+    Parameters
+    ----------
+    text : str
+        ``"s1002"`` or ``"wheels/mine.prw"``; a path has a folder or an ending.
+    """
+    return {"file": text} if is_path(text) else {"builtin": text}
+
+
+class WheelRail(InputModel):
+    """A pair of wheels on a pair of rails.
+
+    Profiles are those of the right-hand wheel and rail, y outward; the left-hand ones are their
+    mirror images.
+    """
+
+    name: Annotated[Name, Field(description="What to call the pair")]
+    summary: Annotated[Text, Field(description="One line for lists")] = ""
+    source: Annotated[Text, Field(description="Where the values come from")] = ""
+    note: Annotated[Text, Field(description="How far the values can be trusted")] = ""
+    wheel: Annotated[ProfileSpec, Field(description="Wheel: name, file or segments")]
+    rail: Annotated[ProfileSpec, Field(description="Rail: name, file or segments")]
+    running_circle: Annotated[
+        PositiveLength, Field(description="Running circles from the wheelset's centre [m]")
+    ]
+    rail_centre: Annotated[
+        PositiveLength | None,
+        Field(description="Origins of the rail profiles from the track's centre [m]"),
+    ] = None
+    gauge: Annotated[
+        PositiveLength | None,
+        Field(description="Between the gauge faces; gives rail_centre from the profile [m]"),
+    ] = None
+    gauge_height: Annotated[
+        PositiveLength, Field(description="How far below the crown the gauge is measured [m]")
+    ] = 0.014
+    rolling_radius: Annotated[PositiveLength, Field(description="At the running circle [m]")]
+    youngs_modulus: Annotated[PositivePressure, Field(description="Of wheel and rail [Pa]")]
+    poisson_ratio: Annotated[NonNegativeNumber, Field(lt=0.5, description="Of both [1]")]
+    friction: Annotated[NonNegativeNumber, Field(le=2.0, description="Coefficient mu [1]")]
+    restitution: Annotated[
+        NonNegativeNumber, Field(le=1.0, description="Coefficient c_r of the normal law [1]")
+    ]
+    restitution_law: Annotated[
+        Literal["hunt-crossley", "calibrated"],
+        Field(description="calibrated: a free impact rebounds at exactly the coefficient"),
+    ] = "hunt-crossley"
+    onset_rate_bound: Annotated[
+        PositiveSpeed, Field(description="Least approach rate at the onset of contact [m/s]")
+    ] = 0.1
+    speed_bound: Annotated[
+        PositiveSpeed, Field(description="Least train speed in the creepages [m/s]")
+    ] = 1.0
+    creep_law: Annotated[
+        Literal["she", "coulomb", "carter", "polach"],
+        Field(description="How Kalker's linear forces saturate (she: Shen-Hedrick-Elkins)"),
+    ] = "she"
+    reference_roll: Annotated[
+        PositiveAngle, Field(description="Relative roll at which slide-off begins [rad]")
+    ]
+
+    @classmethod
+    def _normalised(cls, data: dict[str, Any]) -> dict[str, Any]:
+        for key in ("wheel", "rail"):
+            if isinstance(data.get(key), str):
+                data[key] = spec_from_text(data[key])
+        return data
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> WheelRail:
+        if (self.gauge is None) == (self.rail_centre is None):
+            found = "found neither" if self.gauge is None else "found both"
+            raise inconsistent(f"give either gauge or rail_centre, {found}")
+        if self.restitution_law == "calibrated" and self.restitution == 0.0:
+            raise inconsistent(
+                'must be above 0 with restitution_law = "calibrated" (no damping makes an impact '
+                "stick), found 0",
+                "restitution",
+            )
+        return self
+
+    def wheel_profile(self) -> Profile:
+        """Make the right-hand wheel's profile, y = 0 on the running circle.
+
+        Returns
+        -------
+        Profile
+
+        Raises
+        ------
+        InputError
+            See :meth:`ProfileSpec.profile`.
+        """
+        return self.wheel.profile("wheel", f"{self.name} wheel")
+
+    def rail_profile(self) -> Profile:
+        """Make the right-hand rail's profile.
+
+        Returns
+        -------
+        Profile
+
+        Raises
+        ------
+        InputError
+            See :meth:`ProfileSpec.profile`.
+        """
+        return self.rail.profile("rail", f"{self.name} rail")
+
+    def rail_half_distance(self, rail: Profile | None = None) -> float:
+        """Distance of the rail profile's origin from the track's centre [m].
+
+        Parameters
+        ----------
+        rail : Profile, optional
+            The profile, if it was made already.
+
+        Returns
+        -------
+        float
+            `rail_centre`, or what gives the gauge at `gauge_height` below the crown.
+
+        Raises
+        ------
+        InputError
+            If the rail's gauge face does not reach that height.
+        """
+        if self.rail_centre is not None:
+            return self.rail_centre
+        from railquake.inputs.profile import face_offset
+
+        assert self.gauge is not None  # one of the two is there, by the validator above
+        rail = self.rail_profile() if rail is None else rail
+        return 0.5 * self.gauge - face_offset(rail, self.gauge_height)
+
+    @classmethod
+    def from_preset(cls, preset: str, overrides: Mapping[str, Any] | None = None) -> WheelRail:
+        """Make a pair from a preset.
+
+        Parameters
+        ----------
+        preset : str
+            A built-in name or the path of a TOML file.
+        overrides : mapping, optional
+            Values to change, as they would stand in the case file's table.
+
+        Returns
+        -------
+        WheelRail
+
+        Raises
+        ------
+        InputError
+            If there is no such preset or the values do not make a pair.
+        """
+        from railquake.inputs.presets import resolved_section
+
+        table = resolved_section("wheelrail", {"preset": preset, **(overrides or {})})
+        return validated(cls, table, "wheelrail")

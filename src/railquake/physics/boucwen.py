@@ -1,0 +1,265 @@
+"""Plastic hinge: degrading pinched Bouc-Wen model (Eqs. 11 and 12 of the paper).
+
+The moment of the hinge under the rotation x (theta_1 of the pier) is ::
+
+    M  = alpha kp x + (1 - alpha) kp z                                              (Eq. 11)
+    z' = A x' - beta ( abs(x') abs(z)^(n-1) z + eta0 x' abs(z)^n )                  (Eq. 12)
+
+with the state
+
+========  =====================================================================================
+z         hysteretic rotation, rad
+eps       hysteretic energy per mass, (1/m) * integral of (1 - alpha) kp z dx, m2/s2
+x_max     largest abs(x) so far, rad
+d         damage index  rho_eps m eps / (Fy xu) + rho_x x_max / xu
+pk        exp(-phi d)
+A         exp(-delta_k d pk)
+beta      beta0 A exp(n delta_f d)
+kp        k0 [1 - rho_p exp(-1/2 (abs(x)/sigma)^u) (1 - exp(-1/2 (eps/eps_p)^8))]
+========  =====================================================================================
+
+In time: kp from the committed x and eps; backward Euler on z; eps and x_max at their trial values.
+Eq. 12 as printed lacks a z after abs(z)^(n-1).
+
+Source: Pellicciari, Marano, Cuoghi, Briseghella, Lavorato and Tarantino (2018, 2020), as given in
+Gomez and DeJong (2023).
+"""
+
+import math
+
+__all__ = [
+    "advance",
+    "advance_elastic",
+    "advance_linearised",
+    "damage_index",
+    "hysteretic_slope",
+    "pinched_stiffness",
+]
+
+
+def pinched_stiffness(
+    x: float, eps: float, k0: float, rho_p: float, sigma: float, u: float, eps_p: float
+) -> float:
+    """Stiffness kp after pinching, N m/rad, at the committed rotation and energy."""
+    slip = math.exp(-0.5 * math.pow(abs(x) / sigma, u))
+    r2 = (eps / eps_p) * (eps / eps_p)
+    r8 = r2 * r2 * r2 * r2
+    return k0 * (1.0 - rho_p * slip * (1.0 - math.exp(-0.5 * r8)))
+
+
+def damage_index(eps: float, x_max: float, rho_eps_m: float, rho_x: float) -> float:
+    """Damage d, with rho_eps_m = rho_eps m / (Fy xu) and rho_x here divided by xu."""
+    return rho_eps_m * eps + rho_x * x_max
+
+
+def hysteretic_slope(
+    z: float,
+    eps: float,
+    x_max: float,
+    direction: float,
+    rho_eps_m: float,
+    rho_x: float,
+    phi: float,
+    delta_k: float,
+    delta_f: float,
+    n: float,
+    eta0: float,
+    beta0: float,
+) -> tuple[float, float, float]:
+    """Phi = dz/dx of Eq. 12 and its derivatives by z (damage held) and by the damage d.
+
+    ``direction`` is the sign of x' z: +1 loading, -1 unloading.
+    """
+    d = damage_index(eps, x_max, rho_eps_m, rho_x)
+    pk = math.exp(-phi * d)
+    a = math.exp(-delta_k * d * pk)
+    beta = beta0 * a * math.exp(n * delta_f * d)
+    size = abs(z)
+    power = math.pow(size, n)
+    side = eta0 + direction
+    slope = a - beta * power * side
+    slope_z = -beta * n * power / max(size, 1e-300) * math.copysign(side, side * z)
+    # d(ln A)/dd = -delta_k pk (1 - phi d);  d(ln beta)/dd = d(ln A)/dd + n delta_f
+    log_a = -delta_k * pk * (1.0 - phi * d)
+    slope_d = a * log_a - beta * power * side * (log_a + n * delta_f)
+    return slope, slope_z, slope_d
+
+
+def advance(
+    x: float,
+    z: float,
+    z_guess: float,
+    eps: float,
+    x_max: float,
+    free_step: float,
+    flexibility: float,
+    k0: float,
+    alpha: float,
+    n: float,
+    eta0: float,
+    beta0: float,
+    rho_eps_m: float,
+    rho_x: float,
+    phi: float,
+    delta_k: float,
+    delta_f: float,
+    sigma: float,
+    u: float,
+    eps_p: float,
+    rho_p: float,
+    mass: float,
+    tolerance: float,
+    max_iterations: float,
+) -> tuple[float, float, float, float, float, float, float]:
+    """One step of the hinge within a structure that is linear but for it, by Newton's method.
+
+    Condensed on the hinge, the structure answers ``dx = free_step - flexibility * M``; with
+    ``flexibility = 0`` the increment of rotation is prescribed.  Since M is linear in x and z, one
+    scalar equation for z remains, f(z) = z - z_n - Phi(z, dx(z)) dx(z) = 0.
+
+    Parameters
+    ----------
+    x, z, eps, x_max : float
+        Committed state.
+    z_guess : float
+        Where Newton's method starts.
+    free_step : float
+        Increment of rotation under no hinge moment, rad.
+    flexibility : float
+        Rotation per hinge moment, rad/(N m).
+    k0 ... mass : float
+        Parameters; ``rho_eps_m`` and ``rho_x`` as in `damage_index`.
+    tolerance : float
+        Largest last correction of z, rad: Newton's error after it is of the order of its square.
+    max_iterations : float
+
+    Returns
+    -------
+    dx, z, eps, x_max : float
+        Increment of rotation and the new state.
+    moment : float
+        N m.
+    tangent : float
+        Consistent dM/dx, N m/rad.
+    correction : float
+        Last correction of z; above ``tolerance`` the iteration has not converged.
+    """
+    kp = pinched_stiffness(x, eps, k0, rho_p, sigma, u, eps_p)
+    backbone = alpha * kp
+    hysteretic = (1.0 - alpha) * kp
+    softening = 1.0 / (1.0 + flexibility * backbone)
+    step_z = -flexibility * hysteretic * softening  # d(dx)/dz
+    z_new = z_guess
+    correction = 2.0 * tolerance + 1.0
+    iteration = 0.0
+    step = 0.0
+    slope = 0.0
+    derivative = 1.0
+    slope_x = 0.0
+    while abs(correction) > tolerance and iteration < max_iterations:
+        step = (free_step - flexibility * (backbone * x + hysteretic * z_new)) * softening
+        direction = -1.0 if step * z_new < 0.0 else 1.0
+        reach = abs(x + step)
+        grows = 1.0 if reach > x_max else 0.0
+        slope, slope_z, slope_d = hysteretic_slope(
+            z_new,
+            eps + hysteretic * z_new * step / mass,
+            max(x_max, reach),
+            direction,
+            rho_eps_m,
+            rho_x,
+            phi,
+            delta_k,
+            delta_f,
+            n,
+            eta0,
+            beta0,
+        )
+        # chain rule through eps(z, dx) and x_max(dx)
+        slope_z = slope_z + slope_d * rho_eps_m * hysteretic * step / mass
+        slope_x = slope_d * (
+            rho_eps_m * hysteretic * z_new / mass + rho_x * grows * math.copysign(1.0, x + step)
+        )
+        derivative = 1.0 - slope_z * step - (slope + slope_x * step) * step_z
+        correction = (z_new - z - slope * step) / derivative
+        z_new = z_new - correction
+        iteration = iteration + 1.0
+    step_old = step
+    step = (free_step - flexibility * (backbone * x + hysteretic * z_new)) * softening
+    # the derivative by z at fixed dx is what the consistent tangent needs
+    by_z = derivative + (slope + slope_x * step_old) * step_z
+    z_x = (slope + slope_x * step_old) / by_z
+    return (
+        step,
+        z_new,
+        eps + hysteretic * z_new * step / mass,
+        max(x_max, abs(x + step)),
+        backbone * (x + step) + hysteretic * z_new,
+        backbone + hysteretic * z_x,
+        correction,
+    )
+
+
+def advance_linearised(
+    x: float,
+    z: float,
+    z_guess: float,
+    eps: float,
+    x_max: float,
+    free_step: float,
+    flexibility: float,
+    k0: float,
+    alpha: float,
+    n: float,
+    eta0: float,
+    beta0: float,
+    rho_eps_m: float,
+    rho_x: float,
+    phi: float,
+    delta_k: float,
+    delta_f: float,
+    sigma: float,
+    u: float,
+    eps_p: float,
+    rho_p: float,
+    mass: float,
+    tolerance: float,
+    max_iterations: float,
+) -> tuple[float, float, float, float, float, float, float]:
+    """`advance` with a single, consistently linearised solve and no iteration."""
+    step, z_new, eps_new, reach, moment, tangent, _ = advance(
+        x, z, z_guess, eps, x_max, free_step, flexibility, k0, alpha, n, eta0, beta0,
+        rho_eps_m, rho_x, phi, delta_k, delta_f, sigma, u, eps_p, rho_p, mass, 0.0, 1.0,
+    )  # fmt: skip
+    return step, z_new, eps_new, reach, moment, tangent, 0.0
+
+
+def advance_elastic(
+    x: float,
+    z: float,
+    z_guess: float,
+    eps: float,
+    x_max: float,
+    free_step: float,
+    flexibility: float,
+    k0: float,
+    alpha: float,
+    n: float,
+    eta0: float,
+    beta0: float,
+    rho_eps_m: float,
+    rho_x: float,
+    phi: float,
+    delta_k: float,
+    delta_f: float,
+    sigma: float,
+    u: float,
+    eps_p: float,
+    rho_p: float,
+    mass: float,
+    tolerance: float,
+    max_iterations: float,
+) -> tuple[float, float, float, float, float, float, float]:
+    """Elastic hinge, M = k0 x, with the arguments and results of `advance`."""
+    step = (free_step - flexibility * k0 * x) / (1.0 + flexibility * k0)
+    return step, z, eps, max(x_max, abs(x + step)), k0 * (x + step), k0, 0.0

@@ -1,0 +1,186 @@
+"""Normal contact: Hertz stiffness and the Hunt-Crossley force (Eqs. 5 to 7 of the paper).
+
+Hertz (1882), with the relative curvatures A (lateral) and B (rolling direction) ::
+
+    A = (1/R_wheel,y + 1/R_rail,y)/2     B = (1/R_wheel,x + 1/R_rail,x)/2
+    N = K delta^1.5       K = (4 E*/3) / sqrt(r^3 (A + B))                               (Eq. 6)
+    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2
+
+where r is the *dimensionless* approach coefficient of Hertz' theory, a function of
+cos(theta) = (B - A)/(A + B) (the paper calls it a radius of curvature; r = 1 for A = B).  With the
+semi-axes' coefficients m (along the rolling direction) and n, the ellipse has
+a b = delta m n / (r (A + B)).  Concave radii are negative.
+
+Hunt and Crossley (1975) add hysteresis ::
+
+    N = (K + chi delta') delta^1.5 >= 0      chi = alpha_r K / delta'_0              (Eqs. 5, 7)
+
+delta'_0 is the rate at the onset of this contact, frozen until it is lost, and bounded below.
+alpha_r = 3 (1 - c_r)/2 as printed; the *calibrated* choice solves
+alpha (1 + c_r) = ln((1 + alpha)/(1 - alpha c_r)), with which a free impact rebounds at exactly c_r.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+
+__all__ = [
+    "HertzTable",
+    "calibrated_hysteresis",
+    "effective_modulus",
+    "hertz_coefficients",
+    "hertz_lookup",
+    "hertz_table",
+    "normal_force",
+    "onset_hysteresis",
+    "printed_hysteresis",
+]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def effective_modulus(youngs_modulus: float, poisson_ratio: float) -> float:
+    """E* of two bodies of the same material, Pa."""
+    return youngs_modulus / (2.0 * (1.0 - poisson_ratio**2))
+
+
+def hertz_coefficients(angle: Array) -> tuple[Array, Array, Array]:
+    """Hertz' coefficients from the complete elliptic integrals.
+
+    Parameters
+    ----------
+    angle : array
+        theta with cos(theta) = (B - A)/(A + B), in (0, pi).
+
+    Returns
+    -------
+    m, n, r : array
+        Semi-axis along the rolling direction a = m (3 N / (4 E* (A + B)))^(1/3), transverse one
+        b likewise with n, and approach coefficient r.
+
+    Notes
+    -----
+    With the ratio k of the smaller to the larger semi-axis and e^2 = 1 - k^2, the smaller relative
+    curvature's share of A + B is k^2 (K(e) - E(e)) / (e^2 E(e)); this is solved for k, and the
+    rest is explicit (Johnson 1985, section 4.2).
+    """
+    cosine = np.cos(np.asarray(angle, dtype=float))
+    share = 0.5 * (1.0 - np.abs(cosine))
+    low = np.full(share.shape, 1e-6)
+    high = np.full(share.shape, 1.0 - 1e-9)
+    for _ in range(60):  # bisection: monotone, and this runs once per material
+        k = 0.5 * (low + high)
+        e2 = 1.0 - k * k
+        first, second = ellipk(e2), ellipe(e2)
+        found = k * k * (first - second) / (e2 * second)
+        low = np.where(found < share, k, low)
+        high = np.where(found < share, high, k)
+    k = 0.5 * (low + high)
+    e2 = 1.0 - k * k
+    first, second = ellipk(e2), ellipe(e2)
+    large = np.cbrt(2.0 * second / (math.pi * k * k))
+    small = k * large
+    approach = np.cbrt(4.0 * first**3 * k * k / (math.pi**2 * second))
+    # B > A (cosine > 0): the rolling direction is the more curved one and a the smaller semi-axis
+    rolling_is_small = cosine > 0.0
+    return (
+        np.where(rolling_is_small, small, large),
+        np.where(rolling_is_small, large, small),
+        approach,
+    )
+
+
+class HertzTable(NamedTuple):
+    """Hertz' and Kalker's coefficients on evenly spaced theta in [0, pi]; see `hertz_lookup`."""
+
+    stiffness: Array  # (4 E*/3) r^-1.5
+    area: Array  # m n / r
+    creep: Array  # G C22
+    spin: Array  # G C23
+    a_over_b: Array
+
+
+HERTZ_NODES = 4097
+
+
+def hertz_table(youngs_modulus: float, poisson_ratio: float) -> HertzTable:
+    """Tabulate all that a contact needs to know of its curvatures' ratio, for one material."""
+    from railquake.physics.creep import kalker_coefficients
+
+    # the ends theta = 0 and pi (line contacts) are out of reach: A and B are bounded below
+    angle = np.linspace(0.0, math.pi, HERTZ_NODES).clip(1e-3, math.pi - 1e-3)
+    m, n, r = hertz_coefficients(angle)
+    _, c22, c23 = kalker_coefficients(m / n, poisson_ratio)
+    shear = youngs_modulus / (2.0 * (1.0 + poisson_ratio))
+    four_thirds = 4.0 * effective_modulus(youngs_modulus, poisson_ratio) / 3.0
+    return HertzTable(four_thirds * r**-1.5, m * n / r, shear * c22, shear * c23, m / n)
+
+
+def hertz_lookup(
+    lateral: float,
+    rolling: float,
+    stiffness: Array,
+    area: Array,
+    creep: Array,
+    spin: Array,
+) -> tuple[float, float, float]:
+    """Hertz stiffness and creep coefficients of one wheel's contact.
+
+    Parameters
+    ----------
+    lateral, rolling : float
+        Relative curvatures A and B, 1/m, both positive.
+    stiffness, area, creep, spin : array
+        Columns of `HertzTable`.
+
+    Returns
+    -------
+    K : float
+        N/m^1.5.
+    f22 / delta, f23 / delta^1.5 : float
+        Kalker's linear coefficients per indentation: a b is proportional to delta.
+    """
+    total = lateral + rolling
+    place = math.acos((rolling - lateral) / total) * ((len(stiffness) - 1) / math.pi)
+    cell = min(int(place), len(stiffness) - 2)
+    w = place - cell
+    k = ((1.0 - w) * stiffness[cell] + w * stiffness[cell + 1]) / math.sqrt(total)
+    ab = ((1.0 - w) * area[cell] + w * area[cell + 1]) / total
+    f22 = ((1.0 - w) * creep[cell] + w * creep[cell + 1]) * ab
+    f23 = ((1.0 - w) * spin[cell] + w * spin[cell + 1]) * ab * math.sqrt(ab)
+    return k, f22, f23
+
+
+def printed_hysteresis(restitution: float) -> float:
+    """alpha_r = 3 (1 - c_r)/2 of Eq. 7."""
+    return 1.5 * (1.0 - restitution)
+
+
+def calibrated_hysteresis(restitution: float) -> float:
+    """alpha_r with which a free impact rebounds at exactly ``restitution`` (in (0, 1])."""
+    if restitution >= 1.0:
+        return 0.0
+
+    def excess(alpha: float) -> float:
+        return alpha * (1.0 + restitution) - math.log((1.0 + alpha) / (1.0 - alpha * restitution))
+
+    # alpha = 0 is the trivial root; the wanted one lies below the pole at 1/c_r
+    return float(brentq(excess, 1e-9, (1.0 - 1e-13) / restitution, xtol=1e-15))
+
+
+def onset_hysteresis(
+    closed: bool, hysteresis: float, rate: float, alpha_r: float, rate_bound: float
+) -> float:
+    """chi/K of this contact, s/m: fixed at its onset, forgotten when it is lost."""
+    fresh = alpha_r / max(rate, rate_bound)
+    kept = hysteresis if hysteresis > 0.0 else fresh
+    return kept if closed else 0.0
+
+
+def normal_force(delta: float, rate: float, stiffness: float, hysteresis: float) -> tuple[float, float]:
+    """Normal force (Eq. 5), never negative, and its elastic part, N."""
+    elastic = stiffness * delta * math.sqrt(delta)
+    return max(elastic * (1.0 + hysteresis * rate), 0.0), elastic

@@ -1,0 +1,127 @@
+"""Tangential contact force: Kalker's linear theory and its saturation (Eq. 8 of the paper).
+
+In the section there is no longitudinal motion, so F_x = 0 and ::
+
+    F_y   = -f22 xi_y - f23 xi_sp                     (linear, Eq. 8)
+    f22   = G a b C22(a/b, nu)        f23 = G (a b)^1.5 C23(a/b, nu)
+    xi_y  = v_t / V        xi_sp = sin(contact angle from the axle) / rolling radius
+
+v_t is the lateral velocity of the wheel relative to the rail in the contact plane.  Friction
+bounds the force at mu N; a *law* says how it gets there.  Each law returns the factor by which the
+linear force is reduced, as a function of tau = abs(linear force) / (mu N); all have slope 1 at
+tau = 0, so that Kalker's initial slope is kept exactly.  (The relative roll rate adds nothing to
+the spin: its axis x lies in the contact plane, so it has no part about the contact normal.)
+
+Sources: Kalker (1990), table E.3; Shen, Hedrick and Elkins (1983); Carter (1926); Polach (1999).
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+__all__ = [
+    "KALKER_A_OVER_B",
+    "kalker_coefficients",
+    "reduction_carter",
+    "reduction_coulomb",
+    "reduction_polach",
+    "reduction_shen_hedrick_elkins",
+]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+# Kalker (1990), Three-Dimensional Elastic Bodies in Rolling Contact, table E.3: C11, C22, C23 at
+# Poisson's ratio 0, 0.25 and 0.5.  First a/b = 0.1 ... 1, then b/a = 1 ... 0.1 (so a/b rises).
+KALKER_A_OVER_B: Array = np.concatenate(
+    [np.arange(1, 11) / 10.0, 1.0 / (np.arange(9, 0, -1) / 10.0)]
+)
+_POISSON = np.array([0.0, 0.25, 0.5])
+_C11 = np.array(
+    [
+        (2.51, 3.31, 4.85), (2.59, 3.37, 4.81), (2.68, 3.44, 4.80), (2.78, 3.53, 4.82),
+        (2.88, 3.62, 4.83), (2.98, 3.72, 4.91), (3.09, 3.81, 4.97), (3.19, 3.91, 5.05),
+        (3.29, 4.01, 5.12), (3.40, 4.12, 5.20), (3.51, 4.22, 5.30), (3.65, 4.36, 5.42),
+        (3.82, 4.54, 5.58), (4.06, 4.78, 5.80), (4.37, 5.10, 6.11), (4.84, 5.57, 6.57),
+        (5.57, 6.34, 7.34), (6.96, 7.78, 8.82), (10.7, 11.7, 12.9),
+    ]
+)  # fmt: skip
+_C22 = np.array(
+    [
+        (2.51, 2.52, 2.53), (2.59, 2.63, 2.66), (2.68, 2.75, 2.81), (2.78, 2.88, 2.98),
+        (2.88, 3.01, 3.14), (2.98, 3.14, 3.31), (3.09, 3.28, 3.48), (3.19, 3.41, 3.65),
+        (3.29, 3.54, 3.82), (3.40, 3.67, 3.98), (3.51, 3.81, 4.16), (3.65, 3.99, 4.39),
+        (3.82, 4.21, 4.67), (4.06, 4.50, 5.04), (4.37, 4.90, 5.56), (4.84, 5.48, 6.31),
+        (5.57, 6.40, 7.51), (6.96, 8.14, 9.79), (10.7, 12.8, 16.0),
+    ]
+)  # fmt: skip
+_C23 = np.array(
+    [
+        (0.334, 0.473, 0.731), (0.483, 0.603, 0.809), (0.607, 0.715, 0.889),
+        (0.720, 0.823, 0.977), (0.827, 0.929, 1.07), (0.930, 1.03, 1.18), (1.03, 1.14, 1.29),
+        (1.13, 1.25, 1.40), (1.23, 1.36, 1.51), (1.33, 1.47, 1.63), (1.44, 1.59, 1.77),
+        (1.58, 1.75, 1.94), (1.76, 1.95, 2.18), (2.01, 2.23, 2.50), (2.35, 2.62, 2.96),
+        (2.88, 3.24, 3.70), (3.79, 4.32, 5.01), (5.72, 6.63, 7.89), (12.2, 14.6, 18.0),
+    ]
+)  # fmt: skip
+
+
+def kalker_coefficients(a_over_b: Array, poisson: float) -> tuple[Array, Array, Array]:
+    """Creepage coefficients C11, C22, C23 of Kalker's linear theory.
+
+    Parameters
+    ----------
+    a_over_b : array
+        Semi-axis along the rolling direction over the transverse one.  Outside 0.1 to 10, the ends
+        of the table, the value at the end is used.
+    poisson : float
+
+    Returns
+    -------
+    C11, C22, C23 : array
+        Linear in the ratio (a/b up to 1, b/a beyond), quadratic in Poisson's ratio, as Kalker says.
+    """
+    # a coordinate in which the table's own arguments are evenly spaced on both sides of 1
+    ratio = np.clip(np.asarray(a_over_b, dtype=float), 0.1, 10.0)
+    place = np.where(ratio <= 1.0, ratio, 2.0 - 1.0 / ratio)
+    knots = np.where(KALKER_A_OVER_B <= 1.0, KALKER_A_OVER_B, 2.0 - 1.0 / KALKER_A_OVER_B)
+    lagrange = np.array(
+        [
+            np.prod([(poisson - p) / (q - p) for p in _POISSON if p != q])
+            for q in _POISSON
+        ]
+    )
+    c11, c22, c23 = (np.interp(place, knots, table @ lagrange) for table in (_C11, _C22, _C23))
+    return c11, c22, c23
+
+
+def reduction_shen_hedrick_elkins(linear: float, limit: float) -> float:
+    """Shen, Hedrick and Elkins (1983): F = mu N (tau - tau^2/3 + tau^3/27), sliding from tau = 3."""
+    size = abs(linear)
+    tau = size / max(limit, 1e-30)
+    partial = 1.0 - tau / 3.0 + tau * tau / 27.0
+    return partial if tau < 3.0 else limit / max(size, 1e-30)
+
+
+def reduction_coulomb(linear: float, limit: float) -> float:
+    """Kalker's linear force cut off at mu N."""
+    size = abs(linear)
+    return 1.0 if size < limit else limit / max(size, 1e-30)
+
+
+def reduction_carter(linear: float, limit: float) -> float:
+    """Carter's (1926) law with Kalker's slope: F = mu N (tau - tau^2/4), sliding from tau = 2."""
+    size = abs(linear)
+    tau = size / max(limit, 1e-30)
+    return 1.0 - tau / 4.0 if tau < 2.0 else limit / max(size, 1e-30)
+
+
+def reduction_polach(linear: float, limit: float) -> float:
+    """Polach (1999): F = (2 mu N / pi) (eps/(1 + eps^2) + atan eps), eps = pi tau / 4.
+
+    Polach's separate term for spin is replaced by the linear force, which holds spin's part too.
+    """
+    size = abs(linear)
+    tau = size / max(limit, 1e-30)
+    eps = 0.25 * math.pi * tau
+    return (0.5 * (eps / (1.0 + eps * eps) + math.atan(eps)) / eps) if eps > 1e-9 else 1.0

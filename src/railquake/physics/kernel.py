@@ -1,0 +1,229 @@
+"""The one place that names the compiler.
+
+``bind`` takes an entry function of the physics, follows the plain functions that it calls, swaps
+the laws and the constants that were chosen at assembly, and compiles the set for a target.  The
+physics files themselves know nothing of this: under the target ``PYTHON`` the very same source
+runs in the interpreter, where a debugger and a coverage tool can see it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+__all__ = ["PYTHON", "SCALAR", "Kernel", "Target", "bind", "cache_folder", "source_hash"]
+
+Law = Callable[..., Any]
+
+# Reassociation and contraction let LLVM use fused multiply-adds and vectors.  "nnan" and "ninf"
+# are left out on purpose: with them a test for a diverged state would be optimised away.
+FASTMATH = frozenset({"contract", "arcp", "nsz", "reassoc"})
+
+
+@dataclass(frozen=True)
+class Target:
+    """Where a kernel runs.
+
+    Attributes
+    ----------
+    name : str
+        Part of the key of the on-disk cache.
+    compiled : bool
+        False leaves the functions to the interpreter.
+    """
+
+    name: str
+    compiled: bool
+
+
+PYTHON = Target("python", compiled=False)
+SCALAR = Target("scalar", compiled=True)
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A bound entry function.
+
+    Attributes
+    ----------
+    call : callable
+        The compiled function (or the plain one, for the target ``PYTHON``).
+    folder : Path or None
+        Where its machine code is kept between processes.
+    """
+
+    call: Callable[..., Any]
+    folder: Path | None
+
+    @property
+    def is_cached(self) -> bool:
+        """Whether a call can start at once, without compiling first."""
+        return self.folder is None or any(self.folder.glob("*.nbc"))
+
+
+def cache_folder() -> Path:
+    """Folder for everything that can be made again: machine code and contact tables.
+
+    ``RAILQUAKE_CACHE_DIR`` names another one; otherwise the platform's own place is used.
+    """
+    named = os.environ.get("RAILQUAKE_CACHE_DIR")
+    if named:
+        return Path(named)
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    return base / "railquake"
+
+
+@cache
+def source_hash() -> str:
+    """Hash of every physics source file.
+
+    The compiler's own cache looks at the entry function's file alone: an edit of a law in another
+    file would go unseen and stale physics would answer.  So the cache's folder is named by this.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def bind(
+    entry: Law,
+    target: Target,
+    laws: Mapping[Law, Law] | None = None,
+    constants: Mapping[str, int] | None = None,
+) -> Kernel:
+    """Compile ``entry`` and all physics functions that it calls.
+
+    Parameters
+    ----------
+    entry : function
+        For example ``march.march``.
+    target : Target
+    laws : mapping of function to function, optional
+        Laws to put in the place of others wherever they are called (a creep law, a hinge ...).
+    constants : mapping of str to int, optional
+        Module constants to replace, by name, such as ``{"DOF_COUNT": 6}``.
+
+    Returns
+    -------
+    Kernel
+    """
+    chosen = tuple(
+        (original.__qualname__, law.__qualname__) for original, law in (laws or {}).items()
+    )
+    key = repr((entry.__qualname__, target.name, chosen, sorted((constants or {}).items())))
+    return _bind_cached(entry, target, key, _Frozen(laws or {}), _Frozen(constants or {}))
+
+
+class _Frozen(dict[Any, Any]):
+    """A mapping that ``functools.cache`` accepts; ``key`` already tells two of them apart."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return 0
+
+
+@cache
+def _bind_cached(
+    entry: Law, target: Target, key: str, laws: Mapping[Law, Law], constants: Mapping[str, int]
+) -> Kernel:
+    done: dict[Law, Law] = {}
+    rebuilt = _rebuild(entry, target, laws, constants, done)
+    if not target.compiled:
+        return Kernel(rebuilt, None)
+    import numba
+
+    variant = hashlib.sha256(key.encode()).hexdigest()[:12]
+    folder = cache_folder() / "kernels" / source_hash() / f"{target.name}-{variant}"
+    dispatcher = numba.njit(nogil=True, error_model="numpy", fastmath=set(FASTMATH))(rebuilt)
+    _keep_on_disk(dispatcher, folder)
+    return Kernel(dispatcher, folder)
+
+
+def _rebuild(
+    function: Law,
+    target: Target,
+    laws: Mapping[Law, Law],
+    constants: Mapping[str, int],
+    done: dict[Law, Law],
+) -> Law:
+    """Copy of ``function`` whose globals hold the bound laws and constants instead."""
+    assert isinstance(function, FunctionType)
+    names = function.__globals__.copy()
+    for name in function.__code__.co_names:
+        value = names.get(name)
+        if name in constants:
+            names[name] = constants[name]
+        elif isinstance(value, FunctionType) and value.__module__.startswith(__package__ + "."):
+            law = laws.get(value, value)
+            if law not in done:
+                done[law] = _finish(_rebuild(law, target, laws, constants, done), target)
+            names[name] = done[law]
+    copy = FunctionType(
+        function.__code__, names, function.__name__, function.__defaults__, function.__closure__
+    )
+    copy.__module__ = function.__module__
+    copy.__qualname__ = function.__qualname__
+    copy.__doc__ = function.__doc__
+    return copy
+
+
+def _finish(function: Law, target: Target) -> Law:
+    """Compile one called function so that it dissolves into its caller."""
+    if not target.compiled:
+        return function
+    import numba
+
+    law: Law = numba.njit(forceinline=True, error_model="numpy", fastmath=set(FASTMATH))(function)
+    return law
+
+
+def _keep_on_disk(dispatcher: Any, folder: Path) -> None:
+    """Give the dispatcher an on-disk cache in ``folder``, which the variant alone names."""
+    from numba.core import caching
+
+    class Locator(caching._CacheLocator):  # type: ignore[misc]
+        def __init__(self, py_file: str) -> None:
+            self._py_file = py_file
+
+        def get_cache_path(self) -> str:
+            return str(folder)
+
+        def get_source_stamp(self) -> str:
+            return source_hash()
+
+        def get_disambiguator(self) -> None:
+            return None
+
+        @classmethod
+        def from_function(cls, py_func: Law, py_file: str) -> Locator:
+            return cls(py_file)
+
+    class Implementation(caching.CompileResultCacheImpl):  # type: ignore[misc]
+        _locator_classes = [Locator]
+
+    class VariantCache(caching.FunctionCache):  # type: ignore[misc]
+        _impl_class = Implementation
+
+        def _index_key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
+            # The stock key hashes the entry's closure and bytecode, but not the laws bound to its
+            # globals; the folder's name covers those.
+            return signature, codegen.magic_tuple()
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return  # an unwritable cache costs a compilation in each process, nothing more
+    dispatcher._cache = VariantCache(dispatcher.py_func)

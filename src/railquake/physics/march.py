@@ -1,0 +1,669 @@
+"""The coupled run: Figure 4 of the paper, step by step (see `step`), and what is measured.
+
+A run is a sequence of *frames* of ``steps`` time steps (1 ms by default).  Peaks and energies are
+taken at every step; events, low-pass filters, the test for derailment and the history once a
+frame.  Within a frame the ground's acceleration is linear.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from railquake.physics import constant, state
+from railquake.physics.contact import normal_force, onset_hysteresis
+from railquake.physics.creep import reduction_shen_hedrick_elkins
+from railquake.physics.elementary import sin_cos
+from railquake.physics.pier import move_structure, move_track
+from railquake.physics.profiles import FIELDS, Geometry, axis_cell, hermite, zone_contact
+from railquake.physics.vehicle import DOF_COUNT, accelerate, predict, push_wheelset
+
+__all__ = ["LANES", "march", "step"]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+LANES = 1  # scenarios abreast; bound when a kernel is made
+
+
+def step(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
+    """One time step of the coupled system (Figure 4 of the paper)."""
+    for lane in range(lanes):
+        move_ground(S, lane)
+    for lane in range(lanes):
+        move_structure(S, Q, lane)
+    for lane in range(lanes):
+        move_track(S, Q, lane)
+    for i in range(DOF_COUNT):
+        for lane in range(lanes):
+            predict(S, Q, i, lane)
+    for lane in range(lanes):
+        place_wheelset(S, Q, lane)
+    for lane in range(lanes):
+        locate(S, Q, geometry.shift_nodes, lane)
+    for lane in range(lanes):
+        fetch(S, Q, geometry, lane)
+    for lane in range(lanes):
+        interpolate(S, lane)
+    for lane in range(lanes):
+        press(S, Q, lane)
+    for lane in range(lanes):
+        react(S, Q, lane)
+    for i in range(DOF_COUNT):
+        for lane in range(lanes):
+            accelerate(S, Q, i, lane)
+    for lane in range(lanes):
+        push_wheelset(S, Q, lane)
+    for lane in range(lanes):
+        measure(S, Q, lane)
+
+
+def find_contact_forces(S: Array, Q: Array, geometry: Geometry) -> None:
+    """The contact stages of `step` alone, for one scenario at rest or held."""
+    place_wheelset(S, Q, 0)
+    locate(S, Q, geometry.shift_nodes, 0)
+    fetch(S, Q, geometry, 0)
+    interpolate(S, 0)
+    press(S, Q, 0)
+    react(S, Q, 0)
+
+
+def move_ground(S: Array, lane: int) -> None:
+    """Stage: ground acceleration at the new time."""
+    S[state.GROUND, lane] += S[state.GROUND_SLOPE, lane]
+    S[state.GROUND_Z, lane] += S[state.GROUND_Z_SLOPE, lane]
+
+
+def place_wheelset(S: Array, Q: Array, lane: int) -> None:
+    """Stage: wheelset relative to the track, in track axes, and its rates.
+
+    With R turning ground axes into track axes, (Y, Z) = R (x_w - x_t) and, the track turning at
+    phi_t', (Y', Z') = R (v_w - v_t) - phi_t' x (Y, Z).
+    """
+    first = state.VEHICLE + DOF_COUNT - 3
+    sine, cosine = sin_cos(S[state.TRACK_PHI, lane])
+    dy = S[first, lane] - S[state.TRACK_Y, lane]
+    dz = S[first + 1, lane] - Q[constant.WHEELSET_HEIGHT, lane] - S[state.TRACK_Z, lane]
+    vy = S[first + DOF_COUNT, lane] - S[state.TRACK_VY, lane]
+    vz = S[first + DOF_COUNT + 1, lane] - S[state.TRACK_VZ, lane]
+    turning = S[state.TRACK_VPHI, lane]
+    shift = cosine * dy + sine * dz
+    height = cosine * dz - sine * dy
+    roll = S[first + 2, lane] - S[state.TRACK_PHI, lane]
+    S[state.SHIFT, lane] = shift
+    S[state.HEIGHT, lane] = height
+    S[state.ROLL, lane] = roll
+    S[state.SHIFT_V, lane] = cosine * vy + sine * vz + turning * height
+    S[state.HEIGHT_V, lane] = cosine * vz - sine * vy - turning * shift
+    S[state.ROLL_V, lane] = S[first + DOF_COUNT + 2, lane] - turning
+    S[state.ROLL_SIN, lane], S[state.ROLL_COS, lane] = sin_cos(roll)
+
+
+def locate(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
+    """Stage: the contact table's cell for each side's (shift, roll)."""
+    for side in range(2):
+        sign = 2.0 * side - 1.0
+        row = state.CELL + side * state.CELL_ROWS
+        j, w, width = axis_cell(
+            sign * S[state.SHIFT, lane],
+            Q[constant.SHIFT_AXIS, lane],
+            Q[constant.SHIFT_AXIS + 1, lane],
+            Q[constant.SHIFT_AXIS + 2, lane],
+            Q[constant.SHIFT_AXIS + 3, lane],
+        )
+        i, w_roll, width_roll = axis_cell(
+            sign * S[state.ROLL, lane],
+            Q[constant.ROLL_AXIS, lane],
+            Q[constant.ROLL_AXIS + 1, lane],
+            Q[constant.ROLL_AXIS + 2, lane],
+            Q[constant.ROLL_AXIS + 3, lane],
+        )
+        S[row + state.CELL_BASE, lane] = (i * shift_nodes + j) * (2 * FIELDS)
+        S[row + state.CELL_SHIFT, lane] = w
+        S[row + state.CELL_WIDTH, lane] = width
+        S[row + state.CELL_ROLL, lane] = w_roll
+        S[row + state.CELL_ROLL_WIDTH, lane] = width_roll
+
+
+def fetch(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
+    """Stage: loads only, the table's values at the four corners of each cell."""
+    table = geometry.table
+    next_roll = geometry.shift_nodes * 2 * FIELDS
+    for side in range(2):
+        base = int(S[state.CELL + side * state.CELL_ROWS + state.CELL_BASE, lane])
+        for zone in range(2):
+            row = state.CORNERS + (2 * side + zone) * state.CORNER_ROWS
+            place = base + zone * FIELDS
+            for k in range(FIELDS):
+                S[row + k, lane] = table[place + k]
+                S[row + FIELDS + k, lane] = table[place + 2 * FIELDS + k]
+                S[row + 2 * FIELDS + k, lane] = table[place + next_roll + k]
+                S[row + 3 * FIELDS + k, lane] = table[place + next_roll + 2 * FIELDS + k]
+
+
+def interpolate(S: Array, lane: int) -> None:
+    """Stage: gap and contact data of each patch from its cell.
+
+    The gap is cubic (Hermite) in the shift and in the roll, and its derivatives are those of this
+    very interpolation, so that the normal force remains the gradient of the gap.
+    """
+    for side in range(2):
+        cell = state.CELL + side * state.CELL_ROWS
+        w = S[cell + state.CELL_SHIFT, lane]
+        width = S[cell + state.CELL_WIDTH, lane]
+        w_roll = S[cell + state.CELL_ROLL, lane]
+        roll_width = S[cell + state.CELL_ROLL_WIDTH, lane]
+        w00 = (1.0 - w) * (1.0 - w_roll)
+        w10 = w * (1.0 - w_roll)
+        w01 = (1.0 - w) * w_roll
+        w11 = w * w_roll
+        for zone in range(2):
+            # corners: (shift, roll) = (low, low), (high, low), (low, high), (high, high)
+            c00 = state.CORNERS + (2 * side + zone) * state.CORNER_ROWS
+            c10 = c00 + FIELDS
+            c01 = c10 + FIELDS
+            c11 = c01 + FIELDS
+            patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
+            # along the shift, at the lower and at the upper roll
+            low, low_slope = hermite(
+                w, S[c00, lane], S[c10, lane], width * S[c00 + 1, lane], width * S[c10 + 1, lane]
+            )
+            high, high_slope = hermite(
+                w, S[c01, lane], S[c11, lane], width * S[c01 + 1, lane], width * S[c11 + 1, lane]
+            )
+            low_rise = roll_width * (S[c10 + 2, lane] - S[c00 + 2, lane])
+            high_rise = roll_width * (S[c11 + 2, lane] - S[c01 + 2, lane])
+            low_psi = roll_width * S[c00 + 2, lane] + w * low_rise
+            high_psi = roll_width * S[c01 + 2, lane] + w * high_rise
+            # then along the roll
+            gap, gap_psi = hermite(w_roll, low, high, low_psi, high_psi)
+            slope, _ = hermite(w_roll, low_slope, high_slope, low_rise, high_rise)
+            S[patch + state.PATCH_GAP, lane] = gap
+            S[patch + state.PATCH_SLOPE, lane] = slope / width
+            S[patch + state.PATCH_GAP_PSI, lane] = gap_psi / roll_width
+            for k in range(4):
+                S[patch + state.PATCH_RAIL_Z + k, lane] = (
+                    w00 * S[c00 + 3 + k, lane]
+                    + w10 * S[c10 + 3 + k, lane]
+                    + w01 * S[c01 + 3 + k, lane]
+                    + w11 * S[c11 + 3 + k, lane]
+                )
+
+
+def search_grid(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
+    """Stage in the place of `fetch`: gap and contact data of each patch by the grid method."""
+    for side in range(2):
+        sign = 2.0 * side - 1.0
+        shift = sign * S[state.SHIFT, lane]
+        psi = sign * S[state.ROLL, lane]
+        for zone in range(2):
+            first = geometry.flange_points if zone == 0 else 0
+            last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
+            gap, slope, gap_psi, rail_z, stiffness, f22, f23 = zone_contact(
+                shift, psi, first, last, geometry
+            )
+            patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
+            S[patch + state.PATCH_GAP, lane] = gap
+            S[patch + state.PATCH_SLOPE, lane] = slope
+            S[patch + state.PATCH_GAP_PSI, lane] = gap_psi
+            S[patch + state.PATCH_RAIL_Z, lane] = rail_z
+            S[patch + state.PATCH_STIFFNESS, lane] = stiffness
+            S[patch + state.PATCH_CREEP, lane] = f22
+            S[patch + state.PATCH_SPIN, lane] = f23
+
+
+def skip_locate(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
+    """Stage in the place of `locate` where no table is used."""
+
+
+def skip_interpolate(S: Array, lane: int) -> None:
+    """Stage in the place of `interpolate` where no table is used."""
+
+
+def patch_forces(
+    penetration: float,
+    slope: float,
+    gap_psi: float,
+    arm_z: float,
+    stiffness: float,
+    creep: float,
+    spin: float,
+    shift_v: float,
+    height_v: float,
+    roll_v: float,
+    roll_sin: float,
+    roll_cos: float,
+    hysteresis: float,
+    alpha_r: float,
+    onset_bound: float,
+    friction: float,
+    inverse_speed: float,
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """Forces of one wheel's patch on the wheelset (Eqs. 5 to 8), right-hand wheel, track axes.
+
+    Parameters
+    ----------
+    penetration : float
+        Z - G, vertical, m; positive in contact.
+    slope, gap_psi : float
+        dG/dY = tan(gamma) and dG/dpsi.
+    arm_z : float
+        Contact point below the wheelset's centre, m.
+    stiffness, creep, spin : float
+        K, f22/delta and f23/(delta^1.5 r).
+    shift_v, height_v, roll_v : float
+        Y', Z', psi'.
+    roll_sin, roll_cos : float
+    hysteresis, alpha_r, onset_bound : float
+        See `contact.onset_hysteresis`.
+    friction, inverse_speed : float
+        mu and 1/V.
+
+    Returns
+    -------
+    hysteresis : float
+    Q_Y, Q_Z, Q_psi : float
+        Generalised forces, N, N, N m.
+    energy : float
+        Stored Hertz energy, J.
+    impact, creepage, spin_input : float
+        Power lost to hysteresis and to creepage, and power brought in by spin, W.
+    """
+    cos_gamma = 1.0 / math.sqrt(1.0 + slope * slope)
+    delta = max(penetration, 0.0) * cos_gamma
+    rate = (height_v - slope * shift_v - gap_psi * roll_v) * cos_gamma
+    hysteresis = onset_hysteresis(penetration > 0.0, hysteresis, rate, alpha_r, onset_bound)
+    normal, elastic = normal_force(delta, rate, stiffness, hysteresis)
+    # the contact point's arm follows from dG/dpsi = -(arm_y + tan(gamma) arm_z)
+    arm_y = -gap_psi - slope * arm_z
+    sliding = cos_gamma * (shift_v - roll_v * arm_z + slope * (height_v + roll_v * arm_y))
+    # angle from the axle: sin(gamma - psi)
+    sine = cos_gamma * (slope * roll_cos - roll_sin)
+    by_creep = -creep * delta * sliding * inverse_speed
+    by_spin = -spin * delta * math.sqrt(delta) * sine
+    factor = reduction_shen_hedrick_elkins(by_creep + by_spin, friction * normal)
+    tangential = factor * (by_creep + by_spin)
+    down = normal * cos_gamma
+    across = tangential * cos_gamma
+    return (
+        hysteresis,
+        down * slope + across,
+        across * slope - down,
+        down * gap_psi + across * (slope * arm_y - arm_z),
+        0.4 * elastic * delta,
+        (normal - elastic) * rate,
+        -factor * by_creep * sliding,
+        factor * by_spin * sliding,
+    )
+
+
+def press(S: Array, Q: Array, lane: int) -> None:
+    """Stage: contact forces of all patches, summed for the section's wheels."""
+    total_y = 0.0
+    total_z = 0.0
+    total_psi = 0.0
+    energy = 0.0
+    impact = 0.0
+    creepage = 0.0
+    spin_input = 0.0
+    count = Q[constant.AXLES, lane] * S[state.ON_TRACK, lane]
+    height = S[state.HEIGHT, lane]
+    for side in range(2):
+        sign = 2.0 * side - 1.0
+        side_y = 0.0
+        side_z = 0.0
+        for zone in range(2):
+            row = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
+            penetration = height - S[row + state.PATCH_GAP, lane]
+            hysteresis, q_y, q_z, q_psi, stored, lost, crept, spun = patch_forces(
+                penetration,
+                S[row + state.PATCH_SLOPE, lane],
+                S[row + state.PATCH_GAP_PSI, lane],
+                S[row + state.PATCH_RAIL_Z, lane] - height,
+                S[row + state.PATCH_STIFFNESS, lane],
+                S[row + state.PATCH_CREEP, lane],
+                S[row + state.PATCH_SPIN, lane],
+                sign * S[state.SHIFT_V, lane],
+                S[state.HEIGHT_V, lane],
+                sign * S[state.ROLL_V, lane],
+                sign * S[state.ROLL_SIN, lane],
+                S[state.ROLL_COS, lane],
+                S[row + state.PATCH_HYSTERESIS, lane],
+                Q[constant.ALPHA_R, lane],
+                Q[constant.ONSET_BOUND, lane],
+                Q[constant.FRICTION, lane],
+                Q[constant.INVERSE_SPEED, lane],
+            )
+            S[row + state.PATCH_PENETRATION, lane] = penetration
+            S[row + state.PATCH_HYSTERESIS, lane] = hysteresis
+            side_y += sign * q_y
+            side_z += q_z
+            total_psi += sign * q_psi
+            energy += stored
+            impact += lost
+            creepage += crept
+            spin_input += spun
+        total_y += side_y
+        total_z += side_z
+        S[state.LOAD_LEFT + side, lane] = -count * side_z
+        S[state.LATERAL_LEFT + side, lane] = -count * side_y
+    S[state.FORCE_Y, lane] = count * total_y
+    S[state.FORCE_Z, lane] = count * total_z
+    S[state.FORCE_PSI, lane] = count * total_psi
+    S[state.HERTZ_ENERGY, lane] = count * energy
+    S[state.IMPACT_POWER, lane] = count * impact
+    S[state.CREEP_POWER, lane] = count * creepage
+    S[state.SPIN_POWER, lane] = count * spin_input
+
+
+def react(S: Array, Q: Array, lane: int) -> None:
+    """Stage: contact forces turned to ground axes, on the wheelset and on the pier's top node."""
+    first = state.VEHICLE + DOF_COUNT - 3
+    sine, cosine = sin_cos(S[state.TRACK_PHI, lane])
+    force_y = cosine * S[state.FORCE_Y, lane] - sine * S[state.FORCE_Z, lane]
+    force_z = sine * S[state.FORCE_Y, lane] + cosine * S[state.FORCE_Z, lane]
+    dy = S[first, lane] - S[state.TRACK_Y, lane]
+    dz = S[first + 1, lane] - Q[constant.WHEELSET_HEIGHT, lane] - S[state.TRACK_Z, lane]
+    moment = -(S[state.FORCE_PSI, lane] + dy * force_z - dz * force_y)
+    S[state.WHEELSET_Y, lane] = force_y
+    S[state.WHEELSET_Z, lane] = force_z
+    S[state.WHEELSET_PHI, lane] = S[state.FORCE_PSI, lane]
+    # work on the track: by the force that was on it during this step, the last one
+    S[state.WORK_TRACK, lane] += 0.5 * (
+        (S[state.TRACK_OLD, lane] + S[state.TRACK_FY, lane]) * S[state.TRACK_STEP_Y, lane]
+        + (S[state.TRACK_OLD + 1, lane] + S[state.TRACK_FZ, lane]) * S[state.TRACK_STEP_Z, lane]
+        + (S[state.TRACK_OLD + 2, lane] + S[state.TRACK_MX, lane]) * S[state.TRACK_STEP_PHI, lane]
+    )
+    S[state.TRACK_OLD, lane] = S[state.TRACK_FY, lane]
+    S[state.TRACK_OLD + 1, lane] = S[state.TRACK_FZ, lane]
+    S[state.TRACK_OLD + 2, lane] = S[state.TRACK_MX, lane]
+    S[state.TRACK_FY, lane] = -force_y
+    S[state.TRACK_FZ, lane] = -force_z
+    S[state.TRACK_MX, lane] = moment
+    on_phi = (
+        -Q[constant.MAP_H, lane] * force_y
+        - Q[constant.MAP_E, lane] * force_z
+        + Q[constant.MAP_PHI, lane] * moment
+    )
+    S[state.NODE_U, lane] = -Q[constant.MAP_U, lane] * force_y
+    S[state.NODE_THETA2, lane] = -on_phi
+    S[state.DASHPOT_POWER_OLD, lane] = S[state.DASHPOT_POWER, lane]
+    S[state.DASHPOT_POWER, lane] = 0.0
+
+
+def measure(S: Array, Q: Array, lane: int) -> None:
+    """Stage: peaks, losses and times that need every step."""
+    dt = Q[constant.DT, lane]
+    half = 0.5 * dt
+    for k in range(3):
+        S[state.LOST_IMPACT + k, lane] += half * (
+            S[state.IMPACT_POWER_OLD + k, lane] + S[state.IMPACT_POWER + k, lane]
+        )
+        S[state.IMPACT_POWER_OLD + k, lane] = S[state.IMPACT_POWER + k, lane]
+    S[state.LOST_DASHPOTS, lane] += half * (
+        S[state.DASHPOT_POWER_OLD, lane] + S[state.DASHPOT_POWER, lane]
+    )
+    on = S[state.ON_TRACK, lane]
+    lateral = -S[state.FORCE_Y, lane]
+    load_left = S[state.LOAD_LEFT, lane]
+    load_right = S[state.LOAD_RIGHT, lane]
+    raise_peak(S, state.PEAK_U, S[state.U, lane], lane)
+    raise_peak(S, state.PEAK_U_V, S[state.U_V, lane], lane)
+    raise_peak(S, state.PEAK_U_A, S[state.U_A, lane] + S[state.GROUND, lane], lane)
+    raise_peak(S, state.PEAK_THETA1, S[state.THETA1, lane], lane)
+    raise_peak(S, state.PEAK_MOMENT, S[state.MOMENT, lane], lane)
+    raise_peak(S, state.PEAK_THETA2, S[state.THETA2, lane], lane)
+    raise_peak(S, state.PEAK_ROLL, S[state.ROLL, lane], lane)
+    raise_peak(S, state.PEAK_SHIFT, S[state.SHIFT, lane], lane)
+    raise_peak(S, state.PEAK_LOAD, max(load_left, load_right), lane)
+    raise_peak(S, state.PEAK_LATERAL, lateral, lane)
+    left, right = wheels_off(S, lane)
+    S[state.TIME_ONE_WHEEL, lane] += dt * on * max(left, right)
+    S[state.TIME_DETACHED, lane] += dt * on * min(left, right)
+    S[state.SUM_LATERAL, lane] += lateral
+    S[state.SUM_LOAD_LEFT, lane] += load_left
+    S[state.SUM_LOAD_RIGHT, lane] += load_right
+    S[state.SUM_LATERAL_LEFT, lane] += S[state.LATERAL_LEFT, lane]
+    S[state.SUM_LATERAL_RIGHT, lane] += S[state.LATERAL_RIGHT, lane]
+
+
+def raise_peak(S: Array, row: int, value: float, lane: int) -> None:
+    """Keep the largest absolute value."""
+    S[row, lane] = max(S[row, lane], abs(value))
+
+
+def wheels_off(S: Array, lane: int) -> tuple[float, float]:
+    """1 for each side (left, right) whose wheels touch their rail nowhere, else 0."""
+    row = state.PATCH + state.PATCH_PENETRATION
+    left = max(S[row, lane], S[row + state.PATCH_ROWS, lane])
+    right = max(S[row + 2 * state.PATCH_ROWS, lane], S[row + 3 * state.PATCH_ROWS, lane])
+    return 0.0 if left > 0.0 else 1.0, 0.0 if right > 0.0 else 1.0
+
+
+def low_pass(S: Array, Q: Array, number: int, value: float, lane: int) -> float:
+    """Second-order low-pass filter ``number`` fed with ``value``; its new output."""
+    row = state.FILTER + number * state.FILTER_ROWS
+    output = (
+        Q[constant.FILTER_B0, lane] * value
+        + Q[constant.FILTER_B1, lane] * S[row, lane]
+        + Q[constant.FILTER_B2, lane] * S[row + 1, lane]
+        - Q[constant.FILTER_A1, lane] * S[row + 2, lane]
+        - Q[constant.FILTER_A2, lane] * S[row + 3, lane]
+    )
+    S[row + 1, lane] = S[row, lane]
+    S[row, lane] = value
+    S[row + 3, lane] = S[row + 2, lane]
+    S[row + 2, lane] = output
+    return output
+
+
+def filter_forces(S: Array, Q: Array, steps: float, lane: int) -> None:
+    """Frame stage: low-passed lateral force, wheel loads and derailment coefficient Y/Q."""
+    share = 1.0 / steps
+    lateral = low_pass(S, Q, 0, share * S[state.SUM_LATERAL, lane], lane)
+    load_left = low_pass(S, Q, 1, share * S[state.SUM_LOAD_LEFT, lane], lane)
+    load_right = low_pass(S, Q, 2, share * S[state.SUM_LOAD_RIGHT, lane], lane)
+    y_left = low_pass(S, Q, 3, share * S[state.SUM_LATERAL_LEFT, lane], lane)
+    y_right = low_pass(S, Q, 4, share * S[state.SUM_LATERAL_RIGHT, lane], lane)
+    for k in range(5):
+        S[state.SUM_LATERAL + k, lane] = 0.0
+    on = S[state.ON_TRACK, lane]
+    raise_peak(S, state.PEAK_LATERAL_FILTERED, on * lateral, lane)
+    lowest = min(load_left, load_right)
+    kept = S[state.LOWEST_LOAD, lane]
+    S[state.LOWEST_LOAD, lane] = min(kept, lowest) if on > 0.0 else kept
+    # Y/Q means little on a wheel that hardly bears: it is taken above a tenth of the static load
+    least = 0.1 * Q[constant.STATIC_WHEEL_LOAD, lane]
+    left = abs(y_left) / max(load_left, least) if load_left > least else 0.0
+    right = abs(y_right) / max(load_right, least) if load_right > least else 0.0
+    raise_peak(S, state.PEAK_DERAILMENT_COEFFICIENT, on * max(left, right), lane)
+
+
+def watch(S: Array, Q: Array, lane: int) -> None:
+    """Frame stage: events, derailment and divergence."""
+    on = S[state.ON_TRACK, lane]
+    shift = S[state.SHIFT, lane]
+    roll = S[state.ROLL, lane]
+    sine = S[state.ROLL_SIN, lane]
+    cosine = S[state.ROLL_COS, lane]
+    flange = state.PATCH + state.PATCH_ROWS + state.PATCH_PENETRATION
+    left_off, right_off = wheels_off(S, lane)
+    # flange tips in track axes
+    tip_y = Q[constant.TIP_Y, lane]
+    tip_z = Q[constant.TIP_Z, lane]
+    right_y = shift + tip_y * cosine - tip_z * sine
+    right_z = S[state.HEIGHT, lane] + tip_y * sine + tip_z * cosine
+    left_y = shift - tip_y * cosine - tip_z * sine
+    left_z = S[state.HEIGHT, lane] - tip_y * sine + tip_z * cosine
+    clearance = max(-left_z, -right_z)
+    S[state.PEAK_CLEARANCE, lane] = max(
+        S[state.PEAK_CLEARANCE, lane], clearance if on > 0.0 else -1.0
+    )
+    rail = Q[constant.RAIL_CENTRE, lane]
+    # a derailing flange passes over its rail's head, so it is above the crown when it crosses
+    across = max(
+        right_y - rail if right_z < 0.0 else -1.0, -left_y - rail if left_z < 0.0 else -1.0
+    )
+    # centre of gravity of the vehicle, from the middle of the track along the ground's horizontal
+    moved = 0.0
+    for k in range(DOF_COUNT // 3):
+        moved += (
+            Q[constant.VEHICLE + DOF_COUNT + 3 * k, lane] * S[state.VEHICLE + 3 * k, lane]
+        )
+    cg = moved / Q[constant.VEHICLE_MASS, lane] - S[state.TRACK_Y, lane]
+    # the lower wheel's contact is near the running circle of its rail
+    beyond = abs(cg) - rail
+    holds_flange = max(S[flange, lane], S[flange + 2 * state.PATCH_ROWS, lane]) > 0.0
+    holds_uplift = max(left_off, right_off) > 0.0
+    holds_onset = abs(roll) >= Q[constant.REFERENCE_ROLL, lane]
+    holds_over = clearance > 0.0
+    holds_derailed = across > 0.0 or abs(shift) >= Q[constant.SHIFT_LIMIT, lane]
+    holds_overturned = abs(roll) >= Q[constant.ROLL_LIMIT, lane] or (
+        beyond > 0.0 and holds_onset
+    )
+    flags = S[state.FLAGS, lane]
+    time = S[state.TIME, lane]
+    was_up = math.floor(flags * 0.5) - 2.0 * math.floor(flags * 0.25)
+    now_up = on if holds_uplift else 0.0
+    S[state.UPLIFTS, lane] += now_up * (1.0 - was_up)
+    S[state.UPLIFT_END, lane] = (
+        time if was_up * (1.0 - now_up) > 0.0 else S[state.UPLIFT_END, lane]
+    )
+    sum_of_flags = note(S, state.FLANGE_CONTACT, holds_flange, on, time, lane)
+    sum_of_flags += note(S, state.UPLIFT, holds_uplift, on, time, lane)
+    sum_of_flags += note(S, state.ONSET, holds_onset, on, time, lane)
+    sum_of_flags += note(S, state.FLANGE_OVER, holds_over, on, time, lane)
+    sum_of_flags += note(S, state.DERAILED, holds_derailed, on, time, lane)
+    sum_of_flags += note(S, state.OVERTURNED, holds_overturned, on, time, lane)
+    S[state.FLAGS, lane] = sum_of_flags
+    largest = max(
+        max(abs(S[state.U, lane]), abs(S[state.THETA2, lane])),
+        max(max(abs(shift), abs(roll)), abs(S[state.HEIGHT, lane])),
+    )
+    # written so that NaN, which fails every comparison, counts as diverged
+    S[state.DIVERGED, lane] = S[state.DIVERGED, lane] if largest < 5.0 else 1.0
+    S[state.LEAVING, lane] = on if (holds_derailed or holds_overturned) else 0.0
+
+
+def note(S: Array, event: int, holds: bool, on: float, time: float, lane: int) -> float:
+    """Note when an event first held; its flag, 2^event, if it holds now."""
+    first = S[state.FIRST_TIME + event, lane]
+    holds_now = holds and on > 0.0
+    S[state.FIRST_TIME + event, lane] = time if (holds_now and first < 0.0) else first
+    return 2.0**event if holds_now else 0.0
+
+
+def vehicle_energy(S: Array, Q: Array, lane: int) -> float:
+    """Kinetic and elastic energy of the vehicle now, J."""
+    energy = 0.0
+    for i in range(DOF_COUNT):
+        x = S[state.VEHICLE + i, lane]
+        v = S[state.VEHICLE + DOF_COUNT + i, lane]
+        force = 0.0
+        for j in range(DOF_COUNT):
+            force += (
+                Q[constant.VEHICLE + 3 * DOF_COUNT + i * DOF_COUNT + j, lane]
+                * S[state.VEHICLE + j, lane]
+            )
+        energy += 0.5 * (x * force + v * v / Q[constant.VEHICLE + i, lane])
+    return energy
+
+
+def release(S: Array, Q: Array, lane: int) -> None:
+    """Frame stage: take a derailed vehicle out of the model, with its energy on record.
+
+    From then on it stands still and pushes no more; the structure runs on alone.
+    """
+    leaving = S[state.LEAVING, lane]
+    staying = 1.0 - leaving
+    S[state.VEHICLE_ENERGY, lane] += leaving * vehicle_energy(S, Q, lane)
+    S[state.HERTZ_LEFT, lane] += leaving * S[state.HERTZ_ENERGY, lane]
+    S[state.ON_TRACK, lane] *= staying
+    for i in range(DOF_COUNT, 4 * DOF_COUNT):
+        S[state.VEHICLE + i, lane] *= staying
+    S[state.NODE_U, lane] *= staying
+    S[state.NODE_THETA2, lane] *= staying
+    for k in range(state.PATCHES_END, state.PATCHES_END + 26):
+        S[k, lane] *= staying
+    S[state.DASHPOT_POWER, lane] *= staying
+
+
+def begin_frame(S: Array, Q: Array, drive: Array, frame: int, lane: int) -> None:
+    """Frame stage: what drives the run during this frame."""
+    shake(S, Q, drive, frame, lane)
+
+
+def shake(S: Array, Q: Array, drive: Array, frame: int, lane: int) -> None:
+    """Frame stage: ground acceleration at the frame's start and its change per step."""
+    steps = Q[constant.FRAME_STEPS, lane]
+    S[state.GROUND, lane] = drive[frame, 0]
+    S[state.GROUND_Z, lane] = drive[frame, 1]
+    S[state.GROUND_SLOPE, lane] = (drive[frame + 1, 0] - drive[frame, 0]) / steps
+    S[state.GROUND_Z_SLOPE, lane] = (drive[frame + 1, 1] - drive[frame, 1]) / steps
+
+
+def begin_frame_on_track(S: Array, Q: Array, drive: Array, frame: int, lane: int) -> None:
+    """Frame stage in the place of `begin_frame`: the cubics of a prescribed track as well.
+
+    Columns 2 to 7 of ``drive`` are y, y', z, z', phi, phi' of the track at the frames' ends.
+    """
+    shake(S, Q, drive, frame, lane)
+    length = Q[constant.FRAME_STEPS, lane] * Q[constant.DT, lane]
+    S[state.TRACK_PLACE, lane] = 0.0
+    S[state.TRACK_RATE, lane] = 1.0 / length
+    for k in range(3):
+        row = state.TRACK_CUBIC + 4 * k
+        d0 = length * drive[frame, 3 + 2 * k]
+        d1 = length * drive[frame + 1, 3 + 2 * k]
+        rise = drive[frame + 1, 2 + 2 * k] - drive[frame, 2 + 2 * k]
+        S[row, lane] = drive[frame, 2 + 2 * k]
+        S[row + 1, lane] = d0
+        S[row + 2, lane] = 3.0 * rise - 2.0 * d0 - d1
+        S[row + 3, lane] = d0 + d1 - 2.0 * rise
+
+
+def march(
+    state_in: Array,
+    constants: Array,
+    geometry: Geometry,
+    drive: Array,
+    first_frame: int,
+    frames: int,
+    rows: Array,
+    history: Array,
+) -> None:
+    """Run ``frames`` frames of one scenario and note each frame's state.
+
+    Parameters
+    ----------
+    state_in : array, shape (state rows, 1)
+        State at the start; holds the state at the end on return.
+    constants : array, shape (constant rows, 1)
+    geometry : Geometry
+    drive : array, shape (all frames + 1, 2 or 8)
+        Ground acceleration, lateral and vertical (down), at the frames' ends, m/s2, and the
+        motion of a prescribed track (see `begin_frame_on_track`).
+    first_frame : int
+        Number of the first of these frames in ``drive`` and ``history``.
+    frames : int
+    rows : array of int, shape (channels,)
+        State rows to keep.
+    history : array, shape (all frames + 1, channels)
+        Row k is the state at the end of frame k (row 0, the start, is not written).
+    """
+    S = np.empty((state_in.shape[0], LANES))
+    Q = np.empty((constants.shape[0], LANES))
+    S[:, :] = state_in
+    Q[:, :] = constants
+    steps = int(Q[constant.FRAME_STEPS, 0])
+    for frame in range(first_frame, first_frame + frames):
+        begin_frame(S, Q, drive, frame, 0)
+        for _ in range(steps):
+            step(S, Q, geometry, LANES)
+        S[state.TIME, 0] = (frame + 1) * steps * Q[constant.DT, 0]
+        filter_forces(S, Q, steps, 0)
+        watch(S, Q, 0)
+        for k in range(len(rows)):
+            history[frame + 1, k] = S[rows[k], 0]
+        if S[state.LEAVING, 0] > 0.0:
+            release(S, Q, 0)
+    state_in[:, :] = S

@@ -1,0 +1,36 @@
+"""Newmark's constant average acceleration for the structure (beta = 1/4, gamma = 1/2).
+
+With the increment dx of displacement over a step dt ::
+
+    x''(n+1) = 4 dx/dt^2 - 4 x'/dt - x''        x'(n+1) = 2 dx/dt - x'
+
+so that M x'' + C x' + K x + F = P at the new time becomes ::
+
+    (4 M/dt^2 + 2 C/dt + K) dx + F = P - K x + M (4 x'/dt + x'') + C x'
+
+Source: Newmark (1959), ASCE Journal of the Engineering Mechanics Division 85, 67-94.
+"""
+
+from typing import Any
+
+import numpy as np
+
+__all__ = ["effective_matrix", "new_acceleration", "new_velocity"]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def effective_matrix(mass: Array, damping: Array, stiffness: Array, dt: float) -> Array:
+    """4 M/dt^2 + 2 C/dt + K."""
+    matrix: Array = 4.0 / dt**2 * mass + 2.0 / dt * damping + stiffness
+    return matrix
+
+
+def new_velocity(dx: float, v: float, dt: float) -> float:
+    """x'(n+1) after the increment dx."""
+    return 2.0 * dx / dt - v
+
+
+def new_acceleration(dx: float, v: float, a: float, dt: float) -> float:
+    """x''(n+1) after the increment dx."""
+    return 4.0 / dt * (dx / dt - v) - a
