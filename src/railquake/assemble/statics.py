@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from railquake.errors import InputError
 from railquake.physics import constant, state
 from railquake.physics.profiles import Geometry
+from railquake.physics.vehicle import kernel_order
 
 __all__ = ["ContactForces", "critical_time_step", "monotonic_hinge", "rest"]
 
@@ -258,11 +259,12 @@ def contact_forces(
     ``stages`` runs the contact stages of the kernel on a scratch state ``S``.
     """
     dofs = (len(S) - state.VEHICLE) // state.VEHICLE_BLOCKS
-    first = state.VEHICLE + dofs - 3
+    # the wheelset's (y, z, phi) among the kernel's rows
+    rows = state.VEHICLE + np.argsort(kernel_order(dofs))[-3:]
 
     def evaluate(position: Array, velocity: Array, track: Array) -> tuple[Array, Array]:
-        S[first : first + 3, 0] = position
-        S[first + dofs : first + dofs + 3, 0] = velocity
+        S[rows, 0] = position
+        S[rows + dofs, 0] = velocity
         S[state.TRACK_Y : state.TRACK_Y + 3, 0] = track
         S[state.TRACK_VY : state.TRACK_VY + 3, 0] = 0.0
         # a standing contact: closed, with the hysteresis of the slowest onset

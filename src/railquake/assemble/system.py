@@ -26,6 +26,7 @@ from railquake.physics import boucwen, constant, creep, march, newmark, pier, st
 from railquake.physics.contact import calibrated_hysteresis, printed_hysteresis
 from railquake.physics.kernel import PYTHON, SCALAR, Kernel, Target, bind
 from railquake.physics.profiles import Geometry
+from railquake.physics.vehicle import kernel_order, lateral_block
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -104,7 +105,14 @@ class System:
 
     def kernel(self, target: Target = SCALAR) -> Kernel:
         """Bind `march.march` with this scenario's laws."""
-        return bind(march.march, target, self.laws, {"DOF_COUNT": len(self.vehicle.mass)})
+        laws = dict(self.laws)
+        if target.one_scenario:
+            # what a patch does not need is not computed; many abreast must do it all the same
+            laws[march.patch_forces] = march.closed_patch_forces
+            if march.fetch not in laws:
+                laws[march.fetch] = march.look_up
+                laws[march.interpolate] = march.skip_interpolate
+        return bind(march.march, target, laws, _sizes(self.vehicle))
 
 
 def assemble(scenario: Scenario) -> System:
@@ -141,9 +149,10 @@ def assemble(scenario: Scenario) -> System:
         laws[march.interpolate] = march.skip_interpolate
 
     S = np.zeros((state.VEHICLE + state.VEHICLE_BLOCKS * dofs, 1))
-    Q = np.zeros((constant.VEHICLE + 3 * dofs + 2 * dofs * dofs, 1))
+    Q = np.zeros((constant.VEHICLE + dofs // 3 + 3 * dofs + 2 * dofs * dofs, 1))
     q = Q[:, 0]
     q[constant.DT] = solver.dt
+    q[constant.RATE] = 1.0 / solver.dt
     q[constant.FRAME_STEPS] = frame_steps
     _fill_vehicle(q, scenario, matrices)
     _fill_contact(q, scenario)
@@ -174,7 +183,7 @@ def assemble(scenario: Scenario) -> System:
     S[state.PEAK_CLEARANCE] = -1.0
     S[state.FIRST_TIME : state.FIRST_TIME + state.EVENTS] = -1.0
     S[state.UPLIFT_END] = -1.0
-    forces = statics.contact_forces(S.copy(), Q, geometry, _contact_stages(laws, dofs))
+    forces = statics.contact_forces(S.copy(), Q, geometry, _contact_stages(laws, matrices))
     pier_rest, vehicle_rest, drift, hinge_rest = statics.rest(
         matrices.mass,
         matrices.stiffness,
@@ -193,13 +202,16 @@ def assemble(scenario: Scenario) -> System:
     S[state.U : state.U + 3, 0] = pier_rest
     S[state.Z], S[state.EPS], S[state.X_MAX] = hinge_rest[1:]
     S[state.MOMENT] = _moment(hinge_law, parameters, hinge_rest)
-    S[state.VEHICLE : state.VEHICLE + dofs, 0] = vehicle_rest
-    S[state.VEHICLE + dofs : state.VEHICLE + 2 * dofs : 3, 0] = drift
+    order = kernel_order(dofs)
+    S[state.VEHICLE : state.VEHICLE + dofs, 0] = vehicle_rest[order]
+    S[state.VEHICLE + dofs : state.VEHICLE + 2 * dofs, 0] = np.where(order % 3 == 0, drift, 0.0)
     track = drive[0, [2, 4, 6]] if isinstance(support, PrescribedTrack) else track_map @ pier_rest
     S[state.TRACK_Y : state.TRACK_Y + 3, 0] = track
-    _settle_forces(S, Q, geometry, laws, dofs)
+    _settle_forces(S, Q, geometry, laws, matrices)
 
-    critical = _critical_time_step(S, Q, matrices, forces, track, solver.phi, solver.psi)
+    critical = _critical_time_step(
+        vehicle_rest, drift, matrices, forces, track, solver.phi, solver.psi
+    )
     if solver.dt > critical:
         raise InputError(
             f"solver.dt: {solver.dt:g} s is above the critical time step of {critical:.3g} s "
@@ -212,6 +224,14 @@ def assemble(scenario: Scenario) -> System:
     return System(
         scenario, ground, matrices, S, Q, geometry, drive, laws, critical, load
     )
+
+
+def _sizes(matrices: VehicleMatrices) -> dict[str, int]:
+    """Constants of the kernel that follow from the vehicle."""
+    return {
+        "DOF_COUNT": len(matrices.mass),
+        "BLOCK": lateral_block(matrices.stiffness, matrices.damping),
+    }
 
 
 def _rounded_down(value: float) -> float:
@@ -242,15 +262,16 @@ def _drive(scenario: Scenario, ground: GroundMotion, frame: float) -> Array:
 
 
 def _fill_vehicle(q: Array, scenario: Scenario, matrices: VehicleMatrices) -> None:
-    mass = matrices.mass
-    n = len(mass)
-    role = np.arange(n) % 3
-    base = constant.VEHICLE
-    q[base : base + n] = 1.0 / mass
-    q[base + n : base + 2 * n] = np.where(role == 0, mass, 0.0)
-    q[base + 2 * n : base + 3 * n] = np.where(role == 1, mass, 0.0)
-    q[base + 3 * n : base + 3 * n + n * n] = matrices.stiffness.ravel()
-    q[base + 3 * n + n * n :] = matrices.damping.ravel()
+    order = kernel_order(len(matrices.mass))
+    rows = (
+        matrices.mass[0::3],
+        1.0 / matrices.mass[order],
+        np.where(order % 3 == 0, 1.0, 0.0),
+        np.where(order % 3 == 1, 1.0, 0.0),
+        matrices.stiffness[np.ix_(order, order)].ravel(),
+        matrices.damping[np.ix_(order, order)].ravel(),
+    )
+    q[constant.VEHICLE :] = np.concatenate(rows)
     q[constant.ZHAI_PSI] = scenario.solver.psi
     q[constant.ZHAI_PHI] = scenario.solver.phi
     q[constant.GRAVITY] = GRAVITY
@@ -368,9 +389,11 @@ def _moment(
     return float(law(x, z, z, eps, x_max, 0.0, 0.0, *parameters)[4])
 
 
-def _contact_stages(laws: Laws, dofs: int) -> Callable[[Array, Array, Geometry], None]:
-    """The kernel's contact stages as one plain function; the grid search compiled."""
-    kernel = bind(march.find_contact_forces, PYTHON, laws, {"DOF_COUNT": dofs})
+def _contact_stages(
+    laws: Laws, matrices: VehicleMatrices
+) -> Callable[[Array, Array, Geometry], None]:
+    """The kernel's contact stages as one plain function."""
+    kernel = bind(march.find_contact_forces, PYTHON, laws, _sizes(matrices))
     stages: Callable[[Array, Array, Geometry], None] = kernel.call
     return stages
 
@@ -396,12 +419,14 @@ def _carried(track: Array, dofs: int, scenario: Scenario) -> Array:
     return moved
 
 
-def _settle_forces(S: Array, Q: Array, geometry: Geometry, laws: Laws, dofs: int) -> None:
+def _settle_forces(
+    S: Array, Q: Array, geometry: Geometry, laws: Laws, matrices: VehicleMatrices
+) -> None:
     """Fill the rows that a step expects of the one before it."""
     hysteresis = Q[constant.ALPHA_R, 0] / Q[constant.ONSET_BOUND, 0]
     for patch in range(4):
         S[state.PATCH + patch * state.PATCH_ROWS + state.PATCH_HYSTERESIS, 0] = hysteresis
-    _contact_stages(laws, dofs)(S, Q, geometry)
+    _contact_stages(laws, matrices)(S, Q, geometry)
     S[state.WORK_TRACK : state.WORK_TRACK + 1] = 0.0
     for old, new in ((state.TRACK_OLD, state.TRACK_FY), (state.WHEELSET_OLD, state.WHEELSET_Y)):
         S[old : old + 3] = S[new : new + 3]
@@ -421,8 +446,8 @@ def _settle_forces(S: Array, Q: Array, geometry: Geometry, laws: Laws, dofs: int
 
 
 def _critical_time_step(
-    S: Array,
-    Q: Array,
+    vehicle: Array,
+    drift: float,
     matrices: VehicleMatrices,
     forces: statics.ContactForces,
     track: Array,
@@ -433,12 +458,10 @@ def _critical_time_step(
     n = len(matrices.mass)
     stiffness = matrices.stiffness.copy()
     damping = matrices.damping.copy()
-    position = S[state.VEHICLE + n - 3 : state.VEHICLE + n, 0].copy()
-    velocity = S[state.VEHICLE + 2 * n - 3 : state.VEHICLE + 2 * n, 0].copy()
-    for k, (by, rate) in enumerate(((1e-6, 1e-4), (1e-6, 1e-4), (1e-6, 1e-4))):
-        for matrix, move, turn in ((stiffness, by, 0.0), (damping, 0.0, rate)):
-            unit = np.zeros(3)
-            unit[k] = 1.0
+    position = vehicle[-3:]
+    velocity = np.array([drift, 0.0, 0.0])
+    for k, unit in enumerate(np.eye(3)):
+        for matrix, move, turn in ((stiffness, 1e-6, 0.0), (damping, 0.0, 1e-4)):
             ahead, _ = forces(position + move * unit, velocity + turn * unit, track)
             behind, _ = forces(position - move * unit, velocity - turn * unit, track)
             matrix[n - 3 :, n - 3 + k] -= (ahead - behind) / (2.0 * (move + turn))

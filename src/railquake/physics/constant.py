@@ -1,8 +1,7 @@
 """Rows of the constants ``Q[row, lane]``: everything of a run that stays fixed.
 
-The vehicle's rows stand last: masses, loads and the matrices of Eq. 1 need ``DOF_COUNT`` or
-``DOF_COUNT**2`` rows each: inverse masses, lateral masses, vertical masses (those of the degrees
-of freedom that the ground's lateral and vertical acceleration act on, else 0), K_v and C_v.
+The vehicle's rows stand last: the bodies' masses; then, in the order of `vehicle.kernel_order`,
+inverse masses, 1 for each y, 1 for each z (else 0), and the rows of K_v and of C_v.
 """
 
 from typing import Final
@@ -74,4 +73,5 @@ FILTER_B1: Final = 72
 FILTER_B2: Final = 73
 FILTER_A1: Final = 74
 FILTER_A2: Final = 75
-VEHICLE: Final = 76
+RATE: Final = 76  # 1/dt, 1/s
+VEHICLE: Final = 77

@@ -102,8 +102,9 @@ def audit(start: Array, end: Array, constants: Array) -> EnergyAudit:
     column = np.array(
         [[upper[0], upper[1], upper[2]], [upper[1], upper[3], upper[4]], [upper[2], upper[4], upper[5]]]
     )
-    inverse_mass = q[constant.VEHICLE : constant.VEHICLE + dofs]
-    block = constant.VEHICLE + 3 * dofs
+    block = constant.VEHICLE + dofs // 3
+    inverse_mass = q[block : block + dofs]
+    block += 3 * dofs
     suspension = q[block : block + dofs * dofs].reshape(dofs, dofs)
 
     def stored(s: Array) -> tuple[float, float]:

@@ -37,10 +37,13 @@ class Target:
         Part of the key of the on-disk cache.
     compiled : bool
         False leaves the functions to the interpreter.
+    one_scenario : bool
+        Whether it runs one scenario at a time, so that branches may skip work.
     """
 
     name: str
     compiled: bool
+    one_scenario: bool = True
 
 
 PYTHON = Target("python", compiled=False)
@@ -168,6 +171,8 @@ def _rebuild(
             names[name] = constants[name]
         elif isinstance(value, FunctionType) and value.__module__.startswith(__package__ + "."):
             law = laws.get(value, value)
+            if law.__code__ is function.__code__:
+                law = value  # a law that wraps the one it stands for
             if law not in done:
                 done[law] = _finish(_rebuild(law, target, laws, constants, done), target)
             names[name] = done[law]

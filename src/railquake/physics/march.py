@@ -16,7 +16,16 @@ from railquake.physics.creep import reduction_shen_hedrick_elkins
 from railquake.physics.elementary import sin_cos
 from railquake.physics.pier import move_structure, move_track
 from railquake.physics.profiles import FIELDS, Geometry, axis_cell, hermite, zone_contact
-from railquake.physics.vehicle import DOF_COUNT, accelerate, predict, push_wheelset
+from railquake.physics.vehicle import (
+    BLOCK,
+    DOF_COUNT,
+    accelerate_lateral,
+    accelerate_vertical,
+    carry,
+    damp,
+    predict,
+    push_wheelset,
+)
 
 __all__ = ["LANES", "march", "step"]
 
@@ -37,6 +46,8 @@ def step(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
         for lane in range(lanes):
             predict(S, Q, i, lane)
     for lane in range(lanes):
+        carry(S, Q, lane)
+    for lane in range(lanes):
         place_wheelset(S, Q, lane)
     for lane in range(lanes):
         locate(S, Q, geometry.shift_nodes, lane)
@@ -48,9 +59,14 @@ def step(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
         press(S, Q, lane)
     for lane in range(lanes):
         react(S, Q, lane)
-    for i in range(DOF_COUNT):
+    for i in range(BLOCK):
         for lane in range(lanes):
-            accelerate(S, Q, i, lane)
+            accelerate_lateral(S, Q, i, lane)
+    for i in range(BLOCK, DOF_COUNT):
+        for lane in range(lanes):
+            accelerate_vertical(S, Q, i, lane)
+    for lane in range(lanes):
+        damp(S, Q, lane)
     for lane in range(lanes):
         push_wheelset(S, Q, lane)
     for lane in range(lanes):
@@ -79,22 +95,23 @@ def place_wheelset(S: Array, Q: Array, lane: int) -> None:
     With R turning ground axes into track axes, (Y, Z) = R (x_w - x_t) and, the track turning at
     phi_t', (Y', Z') = R (v_w - v_t) - phi_t' x (Y, Z).
     """
-    first = state.VEHICLE + DOF_COUNT - 3
+    y = state.VEHICLE + 2 * (DOF_COUNT // 3) - 2  # wheelset's rows; phi follows y
+    z = state.VEHICLE + DOF_COUNT - 1
     sine, cosine = sin_cos(S[state.TRACK_PHI, lane])
-    dy = S[first, lane] - S[state.TRACK_Y, lane]
-    dz = S[first + 1, lane] - Q[constant.WHEELSET_HEIGHT, lane] - S[state.TRACK_Z, lane]
-    vy = S[first + DOF_COUNT, lane] - S[state.TRACK_VY, lane]
-    vz = S[first + DOF_COUNT + 1, lane] - S[state.TRACK_VZ, lane]
+    dy = S[y, lane] - S[state.TRACK_Y, lane]
+    dz = S[z, lane] - Q[constant.WHEELSET_HEIGHT, lane] - S[state.TRACK_Z, lane]
+    vy = S[y + DOF_COUNT, lane] - S[state.TRACK_VY, lane]
+    vz = S[z + DOF_COUNT, lane] - S[state.TRACK_VZ, lane]
     turning = S[state.TRACK_VPHI, lane]
     shift = cosine * dy + sine * dz
     height = cosine * dz - sine * dy
-    roll = S[first + 2, lane] - S[state.TRACK_PHI, lane]
+    roll = S[y + 1, lane] - S[state.TRACK_PHI, lane]
     S[state.SHIFT, lane] = shift
     S[state.HEIGHT, lane] = height
     S[state.ROLL, lane] = roll
     S[state.SHIFT_V, lane] = cosine * vy + sine * vz + turning * height
     S[state.HEIGHT_V, lane] = cosine * vz - sine * vy - turning * shift
-    S[state.ROLL_V, lane] = S[first + DOF_COUNT + 2, lane] - turning
+    S[state.ROLL_V, lane] = S[y + DOF_COUNT + 1, lane] - turning
     S[state.ROLL_SIN, lane], S[state.ROLL_COS, lane] = sin_cos(roll)
 
 
@@ -140,22 +157,54 @@ def fetch(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
                 S[row + 3 * FIELDS + k, lane] = table[place + next_roll + 2 * FIELDS + k]
 
 
-def interpolate(S: Array, lane: int) -> None:
-    """Stage: gap and contact data of each patch from its cell.
+def blend(w: float, w_roll: float, f00: float, f10: float, f01: float, f11: float) -> float:
+    """Bilinear interpolation between the corners (shift, roll) of a cell."""
+    low = f00 + w * (f10 - f00)
+    high = f01 + w * (f11 - f01)
+    return low + w_roll * (high - low)
 
-    The gap is cubic (Hermite) in the shift and in the roll, and its derivatives are those of this
-    very interpolation, so that the normal force remains the gradient of the gap.
+
+def blend_gap(
+    w: float,
+    w_roll: float,
+    width: float,
+    roll_width: float,
+    g00: float,
+    g10: float,
+    g01: float,
+    g11: float,
+    y00: float,
+    y10: float,
+    y01: float,
+    y11: float,
+    p00: float,
+    p10: float,
+    p01: float,
+    p11: float,
+) -> tuple[float, float, float]:
+    """Gap G within a cell and its derivatives by shift and roll.
+
+    Cubic (Hermite) in the shift from the corners' G and dG/dY, then in the roll from these and
+    dG/dpsi.  The derivatives are those of this very interpolation, so that the normal force
+    remains the gradient of the gap.
     """
+    low, low_slope = hermite(w, g00, g10, width * y00, width * y10)
+    high, high_slope = hermite(w, g01, g11, width * y01, width * y11)
+    low_rise = roll_width * (p10 - p00)
+    high_rise = roll_width * (p11 - p01)
+    gap, gap_psi = hermite(
+        w_roll, low, high, roll_width * p00 + w * low_rise, roll_width * p01 + w * high_rise
+    )
+    slope, _ = hermite(w_roll, low_slope, high_slope, low_rise, high_rise)
+    return gap, slope / width, gap_psi / roll_width
+
+
+def interpolate(S: Array, lane: int) -> None:
+    """Stage: gap and contact data of each patch from its cell's corners."""
     for side in range(2):
         cell = state.CELL + side * state.CELL_ROWS
         w = S[cell + state.CELL_SHIFT, lane]
-        width = S[cell + state.CELL_WIDTH, lane]
         w_roll = S[cell + state.CELL_ROLL, lane]
-        roll_width = S[cell + state.CELL_ROLL_WIDTH, lane]
-        w00 = (1.0 - w) * (1.0 - w_roll)
-        w10 = w * (1.0 - w_roll)
-        w01 = (1.0 - w) * w_roll
-        w11 = w * w_roll
         for zone in range(2):
             # corners: (shift, roll) = (low, low), (high, low), (low, high), (high, high)
             c00 = state.CORNERS + (2 * side + zone) * state.CORNER_ROWS
@@ -163,30 +212,65 @@ def interpolate(S: Array, lane: int) -> None:
             c01 = c10 + FIELDS
             c11 = c01 + FIELDS
             patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
-            # along the shift, at the lower and at the upper roll
-            low, low_slope = hermite(
-                w, S[c00, lane], S[c10, lane], width * S[c00 + 1, lane], width * S[c10 + 1, lane]
-            )
-            high, high_slope = hermite(
-                w, S[c01, lane], S[c11, lane], width * S[c01 + 1, lane], width * S[c11 + 1, lane]
-            )
-            low_rise = roll_width * (S[c10 + 2, lane] - S[c00 + 2, lane])
-            high_rise = roll_width * (S[c11 + 2, lane] - S[c01 + 2, lane])
-            low_psi = roll_width * S[c00 + 2, lane] + w * low_rise
-            high_psi = roll_width * S[c01 + 2, lane] + w * high_rise
-            # then along the roll
-            gap, gap_psi = hermite(w_roll, low, high, low_psi, high_psi)
-            slope, _ = hermite(w_roll, low_slope, high_slope, low_rise, high_rise)
+            gap, slope, gap_psi = blend_gap(
+                w, w_roll, S[cell + state.CELL_WIDTH, lane], S[cell + state.CELL_ROLL_WIDTH, lane],
+                S[c00, lane], S[c10, lane], S[c01, lane], S[c11, lane],
+                S[c00 + 1, lane], S[c10 + 1, lane], S[c01 + 1, lane], S[c11 + 1, lane],
+                S[c00 + 2, lane], S[c10 + 2, lane], S[c01 + 2, lane], S[c11 + 2, lane],
+            )  # fmt: skip
             S[patch + state.PATCH_GAP, lane] = gap
-            S[patch + state.PATCH_SLOPE, lane] = slope / width
-            S[patch + state.PATCH_GAP_PSI, lane] = gap_psi / roll_width
+            S[patch + state.PATCH_SLOPE, lane] = slope
+            S[patch + state.PATCH_GAP_PSI, lane] = gap_psi
             for k in range(4):
-                S[patch + state.PATCH_RAIL_Z + k, lane] = (
-                    w00 * S[c00 + 3 + k, lane]
-                    + w10 * S[c10 + 3 + k, lane]
-                    + w01 * S[c01 + 3 + k, lane]
-                    + w11 * S[c11 + 3 + k, lane]
+                S[patch + state.PATCH_RAIL_Z + k, lane] = blend(
+                    w,
+                    w_roll,
+                    S[c00 + 3 + k, lane],
+                    S[c10 + 3 + k, lane],
+                    S[c01 + 3 + k, lane],
+                    S[c11 + 3 + k, lane],
                 )
+
+
+def look_up(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
+    """`fetch` and `interpolate` in one, for one scenario: only what a patch needs.
+
+    An open patch needs its gap and nothing else.
+    """
+    table = geometry.table
+    next_roll = geometry.shift_nodes * 2 * FIELDS
+    for side in range(2):
+        cell = state.CELL + side * state.CELL_ROWS
+        base = int(S[cell + state.CELL_BASE, lane])
+        w = S[cell + state.CELL_SHIFT, lane]
+        width = S[cell + state.CELL_WIDTH, lane]
+        w_roll = S[cell + state.CELL_ROLL, lane]
+        roll_width = S[cell + state.CELL_ROLL_WIDTH, lane]
+        for zone in range(2):
+            patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
+            c00 = base + zone * FIELDS
+            c10 = c00 + 2 * FIELDS
+            c01 = c00 + next_roll
+            c11 = c10 + next_roll
+            gap, slope, gap_psi = blend_gap(
+                w, w_roll, width, roll_width,
+                table[c00], table[c10], table[c01], table[c11],
+                table[c00 + 1], table[c10 + 1], table[c01 + 1], table[c11 + 1],
+                table[c00 + 2], table[c10 + 2], table[c01 + 2], table[c11 + 2],
+            )  # fmt: skip
+            S[patch + state.PATCH_GAP, lane] = gap
+            if gap < S[state.HEIGHT, lane]:
+                S[patch + state.PATCH_SLOPE, lane] = slope
+                S[patch + state.PATCH_GAP_PSI, lane] = gap_psi
+                for k in range(4):
+                    S[patch + state.PATCH_RAIL_Z + k, lane] = blend(
+                        w,
+                        w_roll,
+                        table[c00 + 3 + k],
+                        table[c10 + 3 + k],
+                        table[c01 + 3 + k],
+                        table[c11 + 3 + k],
+                    )
 
 
 def search_grid(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
@@ -296,6 +380,34 @@ def patch_forces(
     )
 
 
+def closed_patch_forces(
+    penetration: float,
+    slope: float,
+    gap_psi: float,
+    arm_z: float,
+    stiffness: float,
+    creep: float,
+    spin: float,
+    shift_v: float,
+    height_v: float,
+    roll_v: float,
+    roll_sin: float,
+    roll_cos: float,
+    hysteresis: float,
+    alpha_r: float,
+    onset_bound: float,
+    friction: float,
+    inverse_speed: float,
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """`patch_forces` for one scenario: an open patch costs nothing."""
+    if penetration > 0.0:
+        return patch_forces(
+            penetration, slope, gap_psi, arm_z, stiffness, creep, spin, shift_v, height_v, roll_v,
+            roll_sin, roll_cos, hysteresis, alpha_r, onset_bound, friction, inverse_speed,
+        )  # fmt: skip
+    return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+
+
 def press(S: Array, Q: Array, lane: int) -> None:
     """Stage: contact forces of all patches, summed for the section's wheels."""
     total_y = 0.0
@@ -357,12 +469,13 @@ def press(S: Array, Q: Array, lane: int) -> None:
 
 def react(S: Array, Q: Array, lane: int) -> None:
     """Stage: contact forces turned to ground axes, on the wheelset and on the pier's top node."""
-    first = state.VEHICLE + DOF_COUNT - 3
+    y = state.VEHICLE + 2 * (DOF_COUNT // 3) - 2  # wheelset's rows
+    z = state.VEHICLE + DOF_COUNT - 1
     sine, cosine = sin_cos(S[state.TRACK_PHI, lane])
     force_y = cosine * S[state.FORCE_Y, lane] - sine * S[state.FORCE_Z, lane]
     force_z = sine * S[state.FORCE_Y, lane] + cosine * S[state.FORCE_Z, lane]
-    dy = S[first, lane] - S[state.TRACK_Y, lane]
-    dz = S[first + 1, lane] - Q[constant.WHEELSET_HEIGHT, lane] - S[state.TRACK_Z, lane]
+    dy = S[y, lane] - S[state.TRACK_Y, lane]
+    dz = S[z, lane] - Q[constant.WHEELSET_HEIGHT, lane] - S[state.TRACK_Z, lane]
     moment = -(S[state.FORCE_PSI, lane] + dy * force_z - dz * force_y)
     S[state.WHEELSET_Y, lane] = force_y
     S[state.WHEELSET_Z, lane] = force_z
@@ -386,8 +499,6 @@ def react(S: Array, Q: Array, lane: int) -> None:
     )
     S[state.NODE_U, lane] = -Q[constant.MAP_U, lane] * force_y
     S[state.NODE_THETA2, lane] = -on_phi
-    S[state.DASHPOT_POWER_OLD, lane] = S[state.DASHPOT_POWER, lane]
-    S[state.DASHPOT_POWER, lane] = 0.0
 
 
 def measure(S: Array, Q: Array, lane: int) -> None:
@@ -399,9 +510,6 @@ def measure(S: Array, Q: Array, lane: int) -> None:
             S[state.IMPACT_POWER_OLD + k, lane] + S[state.IMPACT_POWER + k, lane]
         )
         S[state.IMPACT_POWER_OLD + k, lane] = S[state.IMPACT_POWER + k, lane]
-    S[state.LOST_DASHPOTS, lane] += half * (
-        S[state.DASHPOT_POWER_OLD, lane] + S[state.DASHPOT_POWER, lane]
-    )
     on = S[state.ON_TRACK, lane]
     lateral = -S[state.FORCE_Y, lane]
     load_left = S[state.LOAD_LEFT, lane]
@@ -506,9 +614,7 @@ def watch(S: Array, Q: Array, lane: int) -> None:
     # centre of gravity of the vehicle, from the middle of the track along the ground's horizontal
     moved = 0.0
     for k in range(DOF_COUNT // 3):
-        moved += (
-            Q[constant.VEHICLE + DOF_COUNT + 3 * k, lane] * S[state.VEHICLE + 3 * k, lane]
-        )
+        moved += Q[constant.VEHICLE + k, lane] * S[state.VEHICLE + 2 * k, lane]
     cg = moved / Q[constant.VEHICLE_MASS, lane] - S[state.TRACK_Y, lane]
     # the lower wheel's contact is near the running circle of its rail
     beyond = abs(cg) - rail
@@ -554,6 +660,7 @@ def note(S: Array, event: int, holds: bool, on: float, time: float, lane: int) -
 
 def vehicle_energy(S: Array, Q: Array, lane: int) -> float:
     """Kinetic and elastic energy of the vehicle now, J."""
+    bodies = DOF_COUNT // 3
     energy = 0.0
     for i in range(DOF_COUNT):
         x = S[state.VEHICLE + i, lane]
@@ -561,10 +668,10 @@ def vehicle_energy(S: Array, Q: Array, lane: int) -> float:
         force = 0.0
         for j in range(DOF_COUNT):
             force += (
-                Q[constant.VEHICLE + 3 * DOF_COUNT + i * DOF_COUNT + j, lane]
+                Q[constant.VEHICLE + bodies + 3 * DOF_COUNT + i * DOF_COUNT + j, lane]
                 * S[state.VEHICLE + j, lane]
             )
-        energy += 0.5 * (x * force + v * v / Q[constant.VEHICLE + i, lane])
+        energy += 0.5 * (x * force + v * v / Q[constant.VEHICLE + bodies + i, lane])
     return energy
 
 

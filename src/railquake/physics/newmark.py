@@ -26,11 +26,11 @@ def effective_matrix(mass: Array, damping: Array, stiffness: Array, dt: float) -
     return matrix
 
 
-def new_velocity(dx: float, v: float, dt: float) -> float:
-    """x'(n+1) after the increment dx."""
-    return 2.0 * dx / dt - v
+def new_velocity(dx: float, v: float, rate: float) -> float:
+    """x'(n+1) after the increment dx; ``rate`` is 1/dt."""
+    return 2.0 * rate * dx - v
 
 
-def new_acceleration(dx: float, v: float, a: float, dt: float) -> float:
-    """x''(n+1) after the increment dx."""
-    return 4.0 / dt * (dx / dt - v) - a
+def new_acceleration(dx: float, v: float, a: float, rate: float) -> float:
+    """x''(n+1) after the increment dx; ``rate`` is 1/dt."""
+    return 4.0 * rate * (rate * dx - v) - a

@@ -92,7 +92,7 @@ def move_structure(S: Array, Q: Array, lane: int) -> None:
     The column is linear, so the unknowns are condensed on the rotation of the hinge, where
     Newton's method (`boucwen.advance`) finds the hinge's share.
     """
-    dt = Q[constant.DT, lane]
+    rate = Q[constant.RATE, lane]
     u, th1, th2 = S[state.U, lane], S[state.THETA1, lane], S[state.THETA2, lane]
     vu, v1, v2 = S[state.U_V, lane], S[state.THETA1_V, lane], S[state.THETA2_V, lane]
     au, a1, a2 = S[state.U_A, lane], S[state.THETA1_A, lane], S[state.THETA2_A, lane]
@@ -114,7 +114,7 @@ def move_structure(S: Array, Q: Array, lane: int) -> None:
     reaction = Q[constant.REACTION, lane]
     node_u = reaction * S[state.NODE_U, lane]
     node_2 = reaction * S[state.NODE_THETA2, lane]
-    four = 4.0 / dt
+    four = 4.0 * rate
     b_u = (
         node_u
         - load * S[state.GROUND, lane]
@@ -167,22 +167,22 @@ def move_structure(S: Array, Q: Array, lane: int) -> None:
     # energy: all trapezoids, exact for this integrator
     mean_ground = S[state.GROUND, lane] - 0.5 * S[state.GROUND_SLOPE, lane]
     S[state.WORK_GROUND, lane] -= load * mean_ground * d_u
-    S[state.LOST_RAYLEIGH, lane] += (
+    S[state.LOST_RAYLEIGH, lane] += rate * (
         d_u * (c_uu * d_u + 2.0 * (c_u1 * d_1 + c_u2 * d_2))
         + d_1 * (c_11 * d_1 + 2.0 * c_12 * d_2)
         + c_22 * d_2 * d_2
-    ) / dt
+    )
     S[state.HINGE_ENERGY, lane] += 0.5 * (S[state.MOMENT, lane] + moment) * d_1
 
     S[state.U, lane] = u + d_u
     S[state.THETA1, lane] = th1 + d_1
     S[state.THETA2, lane] = th2 + d_2
-    S[state.U_V, lane] = new_velocity(d_u, vu, dt)
-    S[state.THETA1_V, lane] = new_velocity(d_1, v1, dt)
-    S[state.THETA2_V, lane] = new_velocity(d_2, v2, dt)
-    S[state.U_A, lane] = new_acceleration(d_u, vu, au, dt)
-    S[state.THETA1_A, lane] = new_acceleration(d_1, v1, a1, dt)
-    S[state.THETA2_A, lane] = new_acceleration(d_2, v2, a2, dt)
+    S[state.U_V, lane] = new_velocity(d_u, vu, rate)
+    S[state.THETA1_V, lane] = new_velocity(d_1, v1, rate)
+    S[state.THETA2_V, lane] = new_velocity(d_2, v2, rate)
+    S[state.U_A, lane] = new_acceleration(d_u, vu, au, rate)
+    S[state.THETA1_A, lane] = new_acceleration(d_1, v1, a1, rate)
+    S[state.THETA2_A, lane] = new_acceleration(d_2, v2, a2, rate)
     S[state.Z_STEP, lane] = z_new - z
     S[state.Z, lane] = z_new
     S[state.EPS, lane] = eps

@@ -1,8 +1,8 @@
 """Rows of the state ``S[row, lane]``: everything of a run that changes with time.
 
-The vehicle's rows stand last, because their number follows from its bodies: five blocks of
-``DOF_COUNT`` rows hold displacement, velocity, acceleration, the last acceleration and the last
-increment of displacement.
+The vehicle's rows stand last, because their number follows from its bodies: six blocks of
+``DOF_COUNT`` rows hold displacement, velocity, acceleration, the last acceleration, the last
+increment of displacement and the dashpots' force, in the order of `vehicle.kernel_order`.
 """
 
 # ruff: noqa: E501
@@ -76,11 +76,10 @@ TRACK_OLD = PATCHES_END + 23
     LOST_CREEP,
     SPIN_INPUT,  # brought in by the train's forward motion
     DASHPOT_POWER,
-    DASHPOT_POWER_OLD,
     VEHICLE_ENERGY,  # kinetic and elastic, kept when the vehicle leaves the model
     HERTZ_LEFT,  # Hertz energy that goes with it
-) = range(PATCHES_END + 28, PATCHES_END + 42)
-AUDIT_END = PATCHES_END + 42
+) = range(PATCHES_END + 28, PATCHES_END + 41)
+AUDIT_END = PATCHES_END + 41
 
 # --- peaks of absolute values, from every step
 (
@@ -131,4 +130,4 @@ TRACK_CUBIC = FIRST_TIME + EVENTS
 (TRACK_PLACE, TRACK_RATE) = range(TRACK_CUBIC + 12, TRACK_CUBIC + 14)
 
 VEHICLE = TRACK_CUBIC + 14
-VEHICLE_BLOCKS = 5
+VEHICLE_BLOCKS = 6

@@ -6,7 +6,8 @@ Each body has three degrees of freedom: lateral displacement y (right), vertical
 (down) and rotation phi about the longitudinal axis (right side down).  A point at (p_y, p_z) from
 a body's centre of gravity is displaced by (y - p_z phi, z + p_y phi).  The equations are linear
 about the undeformed position.  P_ev holds gravity, the effective forces -m a_g of the shaking
-ground and the contact forces on the wheelset, whose three degrees of freedom stand last.
+ground and the contact forces on the wheelset, the last body.  The kernel keeps the degrees of
+freedom in the order of `kernel_order`.
 """
 
 from collections.abc import Sequence
@@ -18,18 +19,26 @@ from railquake.physics import constant, state
 from railquake.physics.zhai import predict_displacement, predict_velocity
 
 __all__ = [
+    "BLOCK",
     "DOF_COUNT",
-    "accelerate",
-    "element_row",
+    "accelerate_lateral",
+    "accelerate_vertical",
+    "carry",
+    "damp",
     "element_matrix",
+    "element_row",
     "fixed_wheelset_modes",
+    "kernel_order",
+    "lateral_block",
     "predict",
     "push_wheelset",
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-DOF_COUNT = 9  # bound to the vehicle's own number when a kernel is made
+# Bound to the vehicle's own numbers when a kernel is made.
+DOF_COUNT = 9
+BLOCK = 6  # rows of the first block, see `kernel_order`
 
 
 def element_row(
@@ -95,16 +104,37 @@ def fixed_wheelset_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     return frequencies, vectors * root[:, None]
 
 
-def predict(S: Array, Q: Array, i: int, lane: int) -> None:
-    """Stage: displacement and velocity of degree of freedom ``i`` at the new time (Zhai).
+def kernel_order(dofs: int) -> Array:
+    """Order in which the kernel keeps (y, z, phi of each body): lateral and roll first, then z.
 
-    The work of the effective ground forces and of gravity goes with it.
+    ``x_kernel = x[kernel_order]``.  In a car that is symmetric about its middle the vertical
+    motion is decoupled from the rest, and each row of Eq. 1 needs its own block only.
     """
+    bodies = np.arange(dofs // 3)
+    lateral = np.column_stack([3 * bodies, 3 * bodies + 2]).ravel()
+    return np.concatenate([lateral, 3 * bodies + 1])
+
+
+def lateral_block(stiffness: Array, damping: Array) -> int:
+    """Rows of the first block in `kernel_order`: two per body, or all where they are coupled."""
+    dofs = len(stiffness)
+    order = kernel_order(dofs)
+    first = 2 * dofs // 3
+    for matrix in (stiffness, damping):
+        coupling = np.abs(matrix[np.ix_(order[:first], order[first:])])
+        if coupling.max(initial=0.0) > 1e-12 * np.abs(matrix).max(initial=1e-300):
+            return dofs
+    return first
+
+
+def predict(S: Array, Q: Array, i: int, lane: int) -> None:
+    """Stage: displacement and velocity of degree of freedom ``i`` at the new time (Zhai)."""
     dt = Q[constant.DT, lane]
     x = state.VEHICLE + i
     v = x + DOF_COUNT
     a = v + DOF_COUNT
     before = a + DOF_COUNT
+    step = before + DOF_COUNT
     on = S[state.ON_TRACK, lane]
     dx = on * predict_displacement(
         S[v, lane], S[a, lane], S[before, lane], dt, Q[constant.ZHAI_PSI, lane]
@@ -113,9 +143,19 @@ def predict(S: Array, Q: Array, i: int, lane: int) -> None:
     S[x, lane] += dx
     S[v, lane] += dv
     S[before, lane] = S[a, lane]
-    S[before + DOF_COUNT, lane] = dx
-    lateral = Q[constant.VEHICLE + DOF_COUNT + i, lane] * dx
-    vertical = Q[constant.VEHICLE + 2 * DOF_COUNT + i, lane] * dx
+    S[step, lane] = dx
+
+
+def carry(S: Array, Q: Array, lane: int) -> None:
+    """Stage: work of the effective ground forces and of gravity on the moving bodies."""
+    bodies = DOF_COUNT // 3
+    step = state.VEHICLE + 4 * DOF_COUNT
+    lateral = 0.0
+    vertical = 0.0
+    for k in range(bodies):
+        mass = Q[constant.VEHICLE + k, lane]
+        lateral += mass * S[step + 2 * k, lane]
+        vertical += mass * S[step + 2 * bodies + k, lane]
     # the ground's acceleration has already moved on; its mean over the step does the work
     mean_y = S[state.GROUND, lane] - 0.5 * S[state.GROUND_SLOPE, lane]
     mean_z = S[state.GROUND_Z, lane] - 0.5 * S[state.GROUND_Z_SLOPE, lane]
@@ -123,34 +163,70 @@ def predict(S: Array, Q: Array, i: int, lane: int) -> None:
     S[state.WORK_GRAVITY, lane] += vertical * Q[constant.GRAVITY, lane]
 
 
-def accelerate(S: Array, Q: Array, i: int, lane: int) -> None:
-    """Stage: row ``i`` of Eq. 1 solved for the acceleration, contact forces left out."""
-    stiffness = constant.VEHICLE + 3 * DOF_COUNT + i * DOF_COUNT
+def accelerate_lateral(S: Array, Q: Array, i: int, lane: int) -> None:
+    """Stage: row ``i`` of Eq. 1 in the first block, contact forces left out."""
+    accelerate(S, Q, i, 0, BLOCK, lane)
+
+
+def accelerate_vertical(S: Array, Q: Array, i: int, lane: int) -> None:
+    """Stage: row ``i`` of Eq. 1 in the second block, contact forces left out."""
+    accelerate(S, Q, i, BLOCK, DOF_COUNT, lane)
+
+
+def accelerate(S: Array, Q: Array, i: int, first: int, last: int, lane: int) -> None:
+    """Row ``i`` of Eq. 1, coupled to ``first <= j < last``, solved for the acceleration."""
+    bodies = DOF_COUNT // 3
+    stiffness = constant.VEHICLE + bodies + 3 * DOF_COUNT + i * DOF_COUNT
     damping = stiffness + DOF_COUNT * DOF_COUNT
     elastic = 0.0
     viscous = 0.0
-    for j in range(DOF_COUNT):
+    for j in range(first, last):
         elastic += Q[stiffness + j, lane] * S[state.VEHICLE + j, lane]
         viscous += Q[damping + j, lane] * S[state.VEHICLE + DOF_COUNT + j, lane]
-    external = Q[constant.VEHICLE + 2 * DOF_COUNT + i, lane] * (
-        Q[constant.GRAVITY, lane] - S[state.GROUND_Z, lane]
-    ) - Q[constant.VEHICLE + DOF_COUNT + i, lane] * S[state.GROUND, lane]
-    S[state.VEHICLE + 2 * DOF_COUNT + i, lane] = Q[constant.VEHICLE + i, lane] * (
-        external - elastic - viscous
+    inverse_mass = Q[constant.VEHICLE + bodies + i, lane]
+    shaken = Q[constant.VEHICLE + bodies + DOF_COUNT + i, lane]  # 1 for y
+    heavy = Q[constant.VEHICLE + bodies + 2 * DOF_COUNT + i, lane]  # 1 for z
+    S[state.VEHICLE + 5 * DOF_COUNT + i, lane] = viscous
+    S[state.VEHICLE + 2 * DOF_COUNT + i, lane] = (
+        heavy * (Q[constant.GRAVITY, lane] - S[state.GROUND_Z, lane])
+        - shaken * S[state.GROUND, lane]
+        - inverse_mass * (elastic + viscous)
     )
-    S[state.DASHPOT_POWER, lane] += viscous * S[state.VEHICLE + DOF_COUNT + i, lane]
+
+
+def damp(S: Array, Q: Array, lane: int) -> None:
+    """Stage: energy lost to the dashpots during this step."""
+    power = 0.0
+    for i in range(DOF_COUNT):
+        power += (
+            S[state.VEHICLE + DOF_COUNT + i, lane] * S[state.VEHICLE + 5 * DOF_COUNT + i, lane]
+        )
+    S[state.LOST_DASHPOTS, lane] += (
+        0.5 * Q[constant.DT, lane] * (S[state.DASHPOT_POWER, lane] + power)
+    )
+    S[state.DASHPOT_POWER, lane] = power
 
 
 def push_wheelset(S: Array, Q: Array, lane: int) -> None:
     """Stage: contact forces on the wheelset, and the work that they do."""
-    last = DOF_COUNT - 3
-    for k in range(3):
-        force = S[state.WHEELSET_Y + k, lane]
-        S[state.VEHICLE + 2 * DOF_COUNT + last + k, lane] += (
-            Q[constant.VEHICLE + last + k, lane] * force
-        )
-        moved = S[state.VEHICLE + 4 * DOF_COUNT + last + k, lane]
-        S[state.WORK_VEHICLE, lane] += 0.5 * (S[state.WHEELSET_OLD + k, lane] + force) * moved
-        S[state.WHEELSET_OLD + k, lane] = force
-
-
+    bodies = DOF_COUNT // 3
+    y = 2 * bodies - 2
+    phi = y + 1
+    z = DOF_COUNT - 1
+    acceleration = state.VEHICLE + 2 * DOF_COUNT
+    inverse_mass = constant.VEHICLE + bodies
+    step = state.VEHICLE + 4 * DOF_COUNT
+    force_y = S[state.WHEELSET_Y, lane]
+    force_z = S[state.WHEELSET_Z, lane]
+    force_phi = S[state.WHEELSET_PHI, lane]
+    S[acceleration + y, lane] += Q[inverse_mass + y, lane] * force_y
+    S[acceleration + z, lane] += Q[inverse_mass + z, lane] * force_z
+    S[acceleration + phi, lane] += Q[inverse_mass + phi, lane] * force_phi
+    S[state.WORK_VEHICLE, lane] += 0.5 * (
+        (S[state.WHEELSET_OLD, lane] + force_y) * S[step + y, lane]
+        + (S[state.WHEELSET_OLD + 1, lane] + force_z) * S[step + z, lane]
+        + (S[state.WHEELSET_OLD + 2, lane] + force_phi) * S[step + phi, lane]
+    )
+    S[state.WHEELSET_OLD, lane] = force_y
+    S[state.WHEELSET_OLD + 1, lane] = force_z
+    S[state.WHEELSET_OLD + 2, lane] = force_phi

@@ -1,0 +1,52 @@
+"""How safely a train runs over a bridge in an earthquake.
+
+>>> import railquake as rq
+>>> case = rq.scenario(record="RSN181.AT2", scale=1.81)
+>>> response = rq.simulate(case)
+>>> rq.assess(response)["uplift_ratio"]
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from railquake.assemble import assemble as assemble
+    from railquake.assess import assess as assess
+    from railquake.errors import InputError as InputError
+    from railquake.inputs.motion import GroundMotion as GroundMotion
+    from railquake.inputs.motion import read_motion as read_motion
+    from railquake.inputs.scenario import Scenario as Scenario
+    from railquake.inputs.scenario import load_scenario as load_scenario
+    from railquake.inputs.scenario import scenario as scenario
+    from railquake.response import Response as Response
+    from railquake.simulate import simulate as simulate
+
+__version__ = "0.1.0"
+
+# Loaded when first asked for: `import railquake` stays quick.
+_HOMES = {
+    "GroundMotion": "railquake.inputs.motion",
+    "InputError": "railquake.errors",
+    "Response": "railquake.response",
+    "Scenario": "railquake.inputs.scenario",
+    "assemble": "railquake.assemble",
+    "assess": "railquake.assess",
+    "load_scenario": "railquake.inputs.scenario",
+    "read_motion": "railquake.inputs.motion",
+    "scenario": "railquake.inputs.scenario",
+    "simulate": "railquake.simulate",
+}
+
+__all__ = ["__version__", *_HOMES]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        value = getattr(import_module(_HOMES[name]), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'railquake' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
