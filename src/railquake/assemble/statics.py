@@ -13,9 +13,12 @@ from railquake.physics import constant, state
 from railquake.physics.profiles import Geometry
 from railquake.physics.vehicle import kernel_order
 
-__all__ = ["ContactForces", "critical_time_step", "monotonic_hinge", "rest"]
+__all__ = ["UNKNOWN_DEGRADATION", "ContactForces", "critical_time_step", "monotonic_hinge", "rest"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+
+# Damage for which no degradation is known, see `boucwen.degradation_now`.
+UNKNOWN_DEGRADATION = (-1.0, 0.0, 0.0, 0.0)
 
 # (displacement, velocity of the wheelset; track y, z, phi) -> forces on the wheelset and on the
 # pier's top node, both in ground axes
@@ -41,7 +44,9 @@ def monotonic_hinge(
 
     def turned(at: tuple[float, ...], by: float) -> tuple[float, ...]:
         x, z, eps, x_max = at
-        dx, z, eps, x_max, found, _, _ = law(x, z, z, eps, x_max, by, 0.0, *parameters)
+        dx, z, eps, x_max, found, *_ = law(
+            x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, by, 0.0, *parameters
+        )
         return x + dx, z, eps, x_max, found
 
     at: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)

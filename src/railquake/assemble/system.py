@@ -25,7 +25,7 @@ from railquake.inputs.support import AtGrade, Pier, PrescribedTrack
 from railquake.physics import boucwen, constant, creep, march, newmark, pier, state
 from railquake.physics.contact import calibrated_hysteresis, printed_hysteresis
 from railquake.physics.kernel import PYTHON, SCALAR, Kernel, Target, bind
-from railquake.physics.profiles import Geometry
+from railquake.physics.profiles import Geometry, axis_constants
 from railquake.physics.vehicle import kernel_order, lateral_block
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from railquake.inputs.motion import GroundMotion
     from railquake.inputs.scenario import Scenario
+    from railquake.inputs.solver import Solver
 
 __all__ = ["GRAVITY", "System", "assemble"]
 
@@ -40,6 +41,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 Laws = dict["Callable[..., Any]", "Callable[..., Any]"]
 
 GRAVITY = 9.80665  # m/s2
+UNKNOWN_DEGRADATION = statics.UNKNOWN_DEGRADATION
 SHIFT_LIMIT = 0.127  # lateral shift that counts as derailed, m (5 in)
 ROLL_LIMIT = math.pi / 4.0  # relative roll that counts as overturned
 
@@ -160,7 +162,9 @@ def assemble(scenario: Scenario) -> System:
     load = 0.5 * float(matrices.mass[1::3].sum()) * GRAVITY
     q[constant.STATIC_WHEEL_LOAD] = load
 
-    stiffness, hinge_law, parameters = _fill_support(q, support, scenario.vehicle.mass)
+    stiffness, hinge_law, parameters = _fill_support(
+        q, support, solver, scenario.vehicle.mass
+    )
     if isinstance(support, PrescribedTrack):
         laws[pier.move_structure] = pier.hold_structure
         laws[pier.move_track] = pier.follow_track
@@ -202,6 +206,7 @@ def assemble(scenario: Scenario) -> System:
     S[state.U : state.U + 3, 0] = pier_rest
     S[state.Z], S[state.EPS], S[state.X_MAX] = hinge_rest[1:]
     S[state.MOMENT] = _moment(hinge_law, parameters, hinge_rest)
+    S[state.DAMAGE] = -1.0  # nothing is known of the degradation yet
     order = kernel_order(dofs)
     S[state.VEHICLE : state.VEHICLE + dofs, 0] = vehicle_rest[order]
     S[state.VEHICLE + dofs : state.VEHICLE + 2 * dofs, 0] = np.where(order % 3 == 0, drift, 0.0)
@@ -294,8 +299,8 @@ def _fill_contact(q: Array, scenario: Scenario) -> None:
     else:
         q[constant.ALPHA_R] = printed_hysteresis(wheelrail.restitution)
     q[constant.ONSET_BOUND] = wheelrail.onset_rate_bound
-    q[constant.SHIFT_AXIS : constant.SHIFT_AXIS + 4] = SHIFT_AXIS
-    q[constant.ROLL_AXIS : constant.ROLL_AXIS + 4] = ROLL_AXIS
+    q[constant.SHIFT_AXIS : constant.SHIFT_AXIS + 6] = axis_constants(SHIFT_AXIS)
+    q[constant.ROLL_AXIS : constant.ROLL_AXIS + 6] = axis_constants(ROLL_AXIS)
     q[constant.REFERENCE_ROLL] = wheelrail.reference_roll
     wheel = wheelrail.wheel.profile("wheel", f"{wheelrail.name} wheel")
     rail = wheelrail.rail.profile("rail", f"{wheelrail.name} rail")
@@ -316,7 +321,7 @@ def _fill_filter(q: Array, corner: float, frame: float) -> None:
 
 
 def _fill_support(
-    q: Array, support: Pier | AtGrade | PrescribedTrack, train_mass: float
+    q: Array, support: Pier | AtGrade | PrescribedTrack, solver: Solver, train_mass: float
 ) -> tuple[Array, Callable[..., tuple[float, ...]], tuple[float, ...]]:
     """Constants of the structure; its stiffness without hinge, the hinge's law and parameters.
 
@@ -371,8 +376,8 @@ def _fill_support(
         hinge.eps_p,
         hinge.rho_p,
         hinge.m,
-        1e-6 * yielded,
-        20.0,
+        solver.newton_tolerance * yielded,
+        float(solver.newton_max_iterations),
     )
     q[constant.K0 : constant.K0 + len(parameters)] = parameters
     law = boucwen.advance_elastic if support.hinge == "elastic" else boucwen.advance
@@ -386,7 +391,7 @@ def _moment(
 ) -> float:
     """Moment of a hinge held where it is."""
     x, z, eps, x_max = hinge
-    return float(law(x, z, z, eps, x_max, 0.0, 0.0, *parameters)[4])
+    return float(law(x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, 0.0, 0.0, *parameters)[4])
 
 
 def _contact_stages(

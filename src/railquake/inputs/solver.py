@@ -36,8 +36,13 @@ class Solver(InputModel):
         1e-3
     )
     newton_tolerance: Annotated[
-        PositiveNumber, Field(lt=1.0, description="Relative residual at which Newton stops [1]")
-    ] = 1e-6
+        PositiveNumber,
+        Field(
+            lt=1.0,
+            description="Newton stops once its last correction of the hinge's z, relative to a "
+            "yielded hinge, is below this; the error left is of the order of its square [1]",
+        ),
+    ] = 1e-4
     newton_max_iterations: Annotated[
         Integer, Field(ge=1, le=1000, description="Newton iterations before a step fails")
     ] = 20

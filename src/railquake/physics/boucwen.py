@@ -32,6 +32,8 @@ __all__ = [
     "advance_elastic",
     "advance_linearised",
     "damage_index",
+    "degradation",
+    "degradation_now",
     "hysteretic_slope",
     "pinched_stiffness",
 ]
@@ -44,7 +46,9 @@ def pinched_stiffness(
     slip = math.exp(-0.5 * math.pow(abs(x) / sigma, u))
     r2 = (eps / eps_p) * (eps / eps_p)
     r8 = r2 * r2 * r2 * r2
-    return k0 * (1.0 - rho_p * slip * (1.0 - math.exp(-0.5 * r8)))
+    # beyond 80 the exponential is lost in the last digit
+    onset = 1.0 - math.exp(-0.5 * r8) if r8 < 80.0 else 1.0
+    return k0 * (1.0 - rho_p * slip * onset)
 
 
 def damage_index(eps: float, x_max: float, rho_eps_m: float, rho_x: float) -> float:
@@ -52,37 +56,52 @@ def damage_index(eps: float, x_max: float, rho_eps_m: float, rho_x: float) -> fl
     return rho_eps_m * eps + rho_x * x_max
 
 
-def hysteretic_slope(
-    z: float,
-    eps: float,
-    x_max: float,
-    direction: float,
-    rho_eps_m: float,
-    rho_x: float,
+def degradation(
+    d: float, phi: float, delta_k: float, delta_f: float, n: float, beta0: float
+) -> tuple[float, float, float]:
+    """A, beta and d(ln A)/dd at the damage d."""
+    pk = math.exp(-phi * d)
+    a = math.exp(-delta_k * d * pk)
+    return a, beta0 * a * math.exp(n * delta_f * d), -delta_k * pk * (1.0 - phi * d)
+
+
+def degradation_now(
+    d: float,
+    d_known: float,
+    a: float,
+    beta: float,
+    log_a: float,
     phi: float,
     delta_k: float,
     delta_f: float,
     n: float,
-    eta0: float,
     beta0: float,
+) -> tuple[float, float, float]:
+    """`degradation` at d; what is known for ``d_known`` is kept while the damage stands still."""
+    if d == d_known:
+        return a, beta, log_a
+    return degradation(d, phi, delta_k, delta_f, n, beta0)
+
+
+def hysteretic_slope(
+    z: float,
+    direction: float,
+    a: float,
+    beta: float,
+    log_a: float,
+    n: float,
+    eta0: float,
+    n_delta_f: float,
 ) -> tuple[float, float, float]:
     """Phi = dz/dx of Eq. 12 and its derivatives by z (damage held) and by the damage d.
 
     ``direction`` is the sign of x' z: +1 loading, -1 unloading.
     """
-    d = damage_index(eps, x_max, rho_eps_m, rho_x)
-    pk = math.exp(-phi * d)
-    a = math.exp(-delta_k * d * pk)
-    beta = beta0 * a * math.exp(n * delta_f * d)
     size = abs(z)
-    power = math.pow(size, n)
-    side = eta0 + direction
-    slope = a - beta * power * side
-    slope_z = -beta * n * power / max(size, 1e-300) * math.copysign(side, side * z)
-    # d(ln A)/dd = -delta_k pk (1 - phi d);  d(ln beta)/dd = d(ln A)/dd + n delta_f
-    log_a = -delta_k * pk * (1.0 - phi * d)
-    slope_d = a * log_a - beta * power * side * (log_a + n * delta_f)
-    return slope, slope_z, slope_d
+    flow = beta * math.pow(size, n) * (eta0 + direction)
+    slope_z = -n * flow / math.copysign(max(size, 1e-300), z)
+    # d(ln beta)/dd = d(ln A)/dd + n delta_f
+    return a - flow, slope_z, a * log_a - flow * (log_a + n_delta_f)
 
 
 def advance(
@@ -91,6 +110,10 @@ def advance(
     z_guess: float,
     eps: float,
     x_max: float,
+    d: float,
+    a: float,
+    beta: float,
+    log_a: float,
     free_step: float,
     flexibility: float,
     k0: float,
@@ -110,7 +133,7 @@ def advance(
     mass: float,
     tolerance: float,
     max_iterations: float,
-) -> tuple[float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
     """One step of the hinge within a structure that is linear but for it, by Newton's method.
 
     Condensed on the hinge, the structure answers ``dx = free_step - flexibility * M``; with
@@ -121,6 +144,8 @@ def advance(
     ----------
     x, z, eps, x_max : float
         Committed state.
+    d, a, beta, log_a : float
+        Damage for which `degradation` is known, and its results.
     z_guess : float
         Where Newton's method starts.
     free_step : float
@@ -143,6 +168,8 @@ def advance(
         Consistent dM/dx, N m/rad.
     correction : float
         Last correction of z; above ``tolerance`` the iteration has not converged.
+    d, a, beta, log_a : float
+        What is known of the degradation now.
     """
     kp = pinched_stiffness(x, eps, k0, rho_p, sigma, u, eps_p)
     backbone = alpha * kp
@@ -161,19 +188,15 @@ def advance(
         direction = -1.0 if step * z_new < 0.0 else 1.0
         reach = abs(x + step)
         grows = 1.0 if reach > x_max else 0.0
+        now = damage_index(
+            eps + hysteretic * z_new * step / mass, max(x_max, reach), rho_eps_m, rho_x
+        )
+        a, beta, log_a = degradation_now(
+            now, d, a, beta, log_a, phi, delta_k, delta_f, n, beta0
+        )
+        d = now
         slope, slope_z, slope_d = hysteretic_slope(
-            z_new,
-            eps + hysteretic * z_new * step / mass,
-            max(x_max, reach),
-            direction,
-            rho_eps_m,
-            rho_x,
-            phi,
-            delta_k,
-            delta_f,
-            n,
-            eta0,
-            beta0,
+            z_new, direction, a, beta, log_a, n, eta0, n * delta_f
         )
         # chain rule through eps(z, dx) and x_max(dx)
         slope_z = slope_z + slope_d * rho_eps_m * hysteretic * step / mass
@@ -197,6 +220,10 @@ def advance(
         backbone * (x + step) + hysteretic * z_new,
         backbone + hysteretic * z_x,
         correction,
+        d,
+        a,
+        beta,
+        log_a,
     )
 
 
@@ -206,6 +233,10 @@ def advance_linearised(
     z_guess: float,
     eps: float,
     x_max: float,
+    d: float,
+    a: float,
+    beta: float,
+    log_a: float,
     free_step: float,
     flexibility: float,
     k0: float,
@@ -225,13 +256,14 @@ def advance_linearised(
     mass: float,
     tolerance: float,
     max_iterations: float,
-) -> tuple[float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
     """`advance` with a single, consistently linearised solve and no iteration."""
-    step, z_new, eps_new, reach, moment, tangent, _ = advance(
-        x, z, z_guess, eps, x_max, free_step, flexibility, k0, alpha, n, eta0, beta0,
-        rho_eps_m, rho_x, phi, delta_k, delta_f, sigma, u, eps_p, rho_p, mass, 0.0, 1.0,
+    step, z_new, eps_new, reach, moment, tangent, _, d, a, beta, log_a = advance(
+        x, z, z_guess, eps, x_max, d, a, beta, log_a, free_step, flexibility,
+        k0, alpha, n, eta0, beta0, rho_eps_m, rho_x, phi, delta_k, delta_f,
+        sigma, u, eps_p, rho_p, mass, 0.0, 1.0,
     )  # fmt: skip
-    return step, z_new, eps_new, reach, moment, tangent, 0.0
+    return step, z_new, eps_new, reach, moment, tangent, 0.0, d, a, beta, log_a
 
 
 def advance_elastic(
@@ -240,6 +272,10 @@ def advance_elastic(
     z_guess: float,
     eps: float,
     x_max: float,
+    d: float,
+    a: float,
+    beta: float,
+    log_a: float,
     free_step: float,
     flexibility: float,
     k0: float,
@@ -259,7 +295,8 @@ def advance_elastic(
     mass: float,
     tolerance: float,
     max_iterations: float,
-) -> tuple[float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
     """Elastic hinge, M = k0 x, with the arguments and results of `advance`."""
     step = (free_step - flexibility * k0 * x) / (1.0 + flexibility * k0)
-    return step, z, eps, max(x_max, abs(x + step)), k0 * (x + step), k0, 0.0
+    reach = max(x_max, abs(x + step))
+    return step, z, eps, reach, k0 * (x + step), k0, 0.0, d, a, beta, log_a

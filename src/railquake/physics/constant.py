@@ -55,23 +55,23 @@ INVERSE_SPEED: Final = 52  # 1/max(V, bound), s/m
 ALPHA_R: Final = 53  # hysteresis of Eq. 7 or calibrated
 ONSET_BOUND: Final = 54  # m/s
 
-# --- table axes ------------------------------------------------------------------------------------
-SHIFT_AXIS: Final = 55  # fine, fine step, coarse step, end
-ROLL_AXIS: Final = 59
+# --- table axes, see `profiles.axis_cell`: fine, end, fine rate, coarse rate, coarse, inner cells --
+SHIFT_AXIS: Final = 55
+ROLL_AXIS: Final = 61
 
 # --- thresholds --------------------------------------------------------------------------------------
-REFERENCE_ROLL: Final = 63
-TIP_Y: Final = 64  # flange tip in wheelset axes of the right-hand wheel, m
-TIP_Z: Final = 65
-RAIL_CENTRE: Final = 66  # half the distance between the rails' centre lines, m
-SHIFT_LIMIT: Final = 67
-ROLL_LIMIT: Final = 68
-STATIC_WHEEL_LOAD: Final = 69  # of one side of the section, N
-VEHICLE_MASS: Final = 70
-FILTER_B0: Final = 71  # low-pass of the frame means: b0, b1, b2, a1, a2
-FILTER_B1: Final = 72
-FILTER_B2: Final = 73
-FILTER_A1: Final = 74
-FILTER_A2: Final = 75
-RATE: Final = 76  # 1/dt, 1/s
-VEHICLE: Final = 77
+REFERENCE_ROLL: Final = 67
+TIP_Y: Final = 68  # flange tip in wheelset axes of the right-hand wheel, m
+TIP_Z: Final = 69
+RAIL_CENTRE: Final = 70  # half the distance between the rails' centre lines, m
+SHIFT_LIMIT: Final = 71
+ROLL_LIMIT: Final = 72
+STATIC_WHEEL_LOAD: Final = 73  # of one side of the section, N
+VEHICLE_MASS: Final = 74
+FILTER_B0: Final = 75  # low-pass of the frame means: b0, b1, b2, a1, a2
+FILTER_B1: Final = 76
+FILTER_B2: Final = 77
+FILTER_A1: Final = 78
+FILTER_A2: Final = 79
+RATE: Final = 80  # 1/dt, 1/s
+VEHICLE: Final = 81

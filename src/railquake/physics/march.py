@@ -106,6 +106,10 @@ def place_wheelset(S: Array, Q: Array, lane: int) -> None:
     shift = cosine * dy + sine * dz
     height = cosine * dz - sine * dy
     roll = S[y + 1, lane] - S[state.TRACK_PHI, lane]
+    S[state.TRACK_SIN, lane] = sine
+    S[state.TRACK_COS, lane] = cosine
+    S[state.ARM_Y, lane] = dy
+    S[state.ARM_Z, lane] = dz
     S[state.SHIFT, lane] = shift
     S[state.HEIGHT, lane] = height
     S[state.ROLL, lane] = roll
@@ -116,29 +120,44 @@ def place_wheelset(S: Array, Q: Array, lane: int) -> None:
 
 
 def locate(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
-    """Stage: the contact table's cell for each side's (shift, roll)."""
-    for side in range(2):
-        sign = 2.0 * side - 1.0
-        row = state.CELL + side * state.CELL_ROWS
-        j, w, width = axis_cell(
-            sign * S[state.SHIFT, lane],
-            Q[constant.SHIFT_AXIS, lane],
-            Q[constant.SHIFT_AXIS + 1, lane],
-            Q[constant.SHIFT_AXIS + 2, lane],
-            Q[constant.SHIFT_AXIS + 3, lane],
-        )
-        i, w_roll, width_roll = axis_cell(
-            sign * S[state.ROLL, lane],
-            Q[constant.ROLL_AXIS, lane],
-            Q[constant.ROLL_AXIS + 1, lane],
-            Q[constant.ROLL_AXIS + 2, lane],
-            Q[constant.ROLL_AXIS + 3, lane],
-        )
-        S[row + state.CELL_BASE, lane] = (i * shift_nodes + j) * (2 * FIELDS)
-        S[row + state.CELL_SHIFT, lane] = w
-        S[row + state.CELL_WIDTH, lane] = width
-        S[row + state.CELL_ROLL, lane] = w_roll
-        S[row + state.CELL_ROLL_WIDTH, lane] = width_roll
+    """Stage: the contact table's cell for each side's (shift, roll).
+
+    The axes are symmetric, so the left side's cell is the mirror image of the right one's.
+    """
+    axis = constant.SHIFT_AXIS
+    j, w, rate = axis_cell(
+        S[state.SHIFT, lane],
+        Q[axis, lane],
+        Q[axis + 1, lane],
+        Q[axis + 2, lane],
+        Q[axis + 3, lane],
+        Q[axis + 4, lane],
+        Q[axis + 5, lane],
+    )
+    last_j = 2.0 * Q[axis + 4, lane] + Q[axis + 5, lane] - 1.0
+    axis = constant.ROLL_AXIS
+    i, w_roll, roll_rate = axis_cell(
+        S[state.ROLL, lane],
+        Q[axis, lane],
+        Q[axis + 1, lane],
+        Q[axis + 2, lane],
+        Q[axis + 3, lane],
+        Q[axis + 4, lane],
+        Q[axis + 5, lane],
+    )
+    last_i = 2.0 * Q[axis + 4, lane] + Q[axis + 5, lane] - 1.0
+    left = state.CELL
+    right = state.CELL + state.CELL_ROWS
+    S[left + state.CELL_BASE, lane] = ((last_i - i) * shift_nodes + last_j - j) * (2 * FIELDS)
+    S[left + state.CELL_SHIFT, lane] = 1.0 - w
+    S[left + state.CELL_SHIFT_RATE, lane] = rate
+    S[left + state.CELL_ROLL, lane] = 1.0 - w_roll
+    S[left + state.CELL_ROLL_RATE, lane] = roll_rate
+    S[right + state.CELL_BASE, lane] = (i * shift_nodes + j) * (2 * FIELDS)
+    S[right + state.CELL_SHIFT, lane] = w
+    S[right + state.CELL_SHIFT_RATE, lane] = rate
+    S[right + state.CELL_ROLL, lane] = w_roll
+    S[right + state.CELL_ROLL_RATE, lane] = roll_rate
 
 
 def fetch(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
@@ -167,8 +186,8 @@ def blend(w: float, w_roll: float, f00: float, f10: float, f01: float, f11: floa
 def blend_gap(
     w: float,
     w_roll: float,
-    width: float,
-    roll_width: float,
+    rate: float,
+    roll_rate: float,
     g00: float,
     g10: float,
     g01: float,
@@ -184,10 +203,12 @@ def blend_gap(
 ) -> tuple[float, float, float]:
     """Gap G within a cell and its derivatives by shift and roll.
 
-    Cubic (Hermite) in the shift from the corners' G and dG/dY, then in the roll from these and
+    ``rate`` and ``roll_rate`` are cells per metre and per radian.  Cubic (Hermite) in the shift from the corners' G and dG/dY, then in the roll from these and
     dG/dpsi.  The derivatives are those of this very interpolation, so that the normal force
     remains the gradient of the gap.
     """
+    width = 1.0 / rate
+    roll_width = 1.0 / roll_rate
     low, low_slope = hermite(w, g00, g10, width * y00, width * y10)
     high, high_slope = hermite(w, g01, g11, width * y01, width * y11)
     low_rise = roll_width * (p10 - p00)
@@ -196,7 +217,7 @@ def blend_gap(
         w_roll, low, high, roll_width * p00 + w * low_rise, roll_width * p01 + w * high_rise
     )
     slope, _ = hermite(w_roll, low_slope, high_slope, low_rise, high_rise)
-    return gap, slope / width, gap_psi / roll_width
+    return gap, slope * rate, gap_psi * roll_rate
 
 
 def interpolate(S: Array, lane: int) -> None:
@@ -213,7 +234,8 @@ def interpolate(S: Array, lane: int) -> None:
             c11 = c01 + FIELDS
             patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
             gap, slope, gap_psi = blend_gap(
-                w, w_roll, S[cell + state.CELL_WIDTH, lane], S[cell + state.CELL_ROLL_WIDTH, lane],
+                w, w_roll,
+                S[cell + state.CELL_SHIFT_RATE, lane], S[cell + state.CELL_ROLL_RATE, lane],
                 S[c00, lane], S[c10, lane], S[c01, lane], S[c11, lane],
                 S[c00 + 1, lane], S[c10 + 1, lane], S[c01 + 1, lane], S[c11 + 1, lane],
                 S[c00 + 2, lane], S[c10 + 2, lane], S[c01 + 2, lane], S[c11 + 2, lane],
@@ -243,9 +265,9 @@ def look_up(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
         cell = state.CELL + side * state.CELL_ROWS
         base = int(S[cell + state.CELL_BASE, lane])
         w = S[cell + state.CELL_SHIFT, lane]
-        width = S[cell + state.CELL_WIDTH, lane]
+        rate = S[cell + state.CELL_SHIFT_RATE, lane]
         w_roll = S[cell + state.CELL_ROLL, lane]
-        roll_width = S[cell + state.CELL_ROLL_WIDTH, lane]
+        roll_rate = S[cell + state.CELL_ROLL_RATE, lane]
         for zone in range(2):
             patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
             c00 = base + zone * FIELDS
@@ -253,7 +275,7 @@ def look_up(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
             c01 = c00 + next_roll
             c11 = c10 + next_roll
             gap, slope, gap_psi = blend_gap(
-                w, w_roll, width, roll_width,
+                w, w_roll, rate, roll_rate,
                 table[c00], table[c10], table[c01], table[c11],
                 table[c00 + 1], table[c10 + 1], table[c01 + 1], table[c11 + 1],
                 table[c00 + 2], table[c10 + 2], table[c01 + 2], table[c11 + 2],
@@ -469,13 +491,12 @@ def press(S: Array, Q: Array, lane: int) -> None:
 
 def react(S: Array, Q: Array, lane: int) -> None:
     """Stage: contact forces turned to ground axes, on the wheelset and on the pier's top node."""
-    y = state.VEHICLE + 2 * (DOF_COUNT // 3) - 2  # wheelset's rows
-    z = state.VEHICLE + DOF_COUNT - 1
-    sine, cosine = sin_cos(S[state.TRACK_PHI, lane])
+    sine = S[state.TRACK_SIN, lane]
+    cosine = S[state.TRACK_COS, lane]
+    dy = S[state.ARM_Y, lane]
+    dz = S[state.ARM_Z, lane]
     force_y = cosine * S[state.FORCE_Y, lane] - sine * S[state.FORCE_Z, lane]
     force_z = sine * S[state.FORCE_Y, lane] + cosine * S[state.FORCE_Z, lane]
-    dy = S[y, lane] - S[state.TRACK_Y, lane]
-    dz = S[z, lane] - Q[constant.WHEELSET_HEIGHT, lane] - S[state.TRACK_Z, lane]
     moment = -(S[state.FORCE_PSI, lane] + dy * force_z - dz * force_y)
     S[state.WHEELSET_Y, lane] = force_y
     S[state.WHEELSET_Z, lane] = force_z

@@ -134,12 +134,16 @@ def move_structure(S: Array, Q: Array, lane: int) -> None:
         + (c_u2 * vu + c_12 * v1 + c_22 * v2)
     )
     z = S[state.Z, lane]
-    d_1, z_new, eps, x_max, moment, _, correction = advance(
+    d_1, z_new, eps, x_max, moment, _, correction, damage, a, beta, log_a = advance(
         th1,
         z,
         z + S[state.Z_STEP, lane],
         S[state.EPS, lane],
         S[state.X_MAX, lane],
+        S[state.DAMAGE, lane],
+        S[state.DEGRADED_A, lane],
+        S[state.DEGRADED_BETA, lane],
+        S[state.DEGRADED_LOG, lane],
         f_u1 * b_u + f_11 * b_1 + f_12 * b_2,
         f_11,
         Q[constant.K0, lane],
@@ -188,6 +192,10 @@ def move_structure(S: Array, Q: Array, lane: int) -> None:
     S[state.EPS, lane] = eps
     S[state.X_MAX, lane] = x_max
     S[state.MOMENT, lane] = moment
+    S[state.DAMAGE, lane] = damage
+    S[state.DEGRADED_A, lane] = a
+    S[state.DEGRADED_BETA, lane] = beta
+    S[state.DEGRADED_LOG, lane] = log_a
     missed = 1.0 if abs(correction) > Q[constant.TOLERANCE, lane] else 0.0
     S[state.UNCONVERGED, lane] += missed
 

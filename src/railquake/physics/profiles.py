@@ -33,6 +33,7 @@ __all__ = [
     "Axis",
     "Geometry",
     "axis_cell",
+    "axis_constants",
     "axis_nodes",
     "fill_table",
     "hermite",
@@ -97,25 +98,41 @@ def axis_nodes(axis: Axis) -> Array:
     return np.concatenate([left, middle, right])
 
 
+def axis_constants(axis: Axis) -> tuple[float, float, float, float, float, float]:
+    """What `axis_cell` needs: fine, end, cells per unit (fine, coarse), coarse and inner cells."""
+    return (
+        axis.fine,
+        axis.end,
+        1.0 / axis.fine_step,
+        1.0 / axis.coarse_step,
+        float(round((axis.end - axis.fine) / axis.coarse_step)),
+        float(round(2.0 * axis.fine / axis.fine_step)),
+    )
+
+
 def axis_cell(
-    x: float, fine: float, fine_step: float, coarse_step: float, end: float
+    x: float,
+    fine: float,
+    end: float,
+    fine_rate: float,
+    coarse_rate: float,
+    coarse_cells: float,
+    inner_cells: float,
 ) -> tuple[float, float, float]:
-    """Cell of x on an `Axis`: number of its left node, place in the cell (0 to 1), cell's width.
+    """Cell of x on an `Axis`: number of its left node, place in the cell (0 to 1), cells per unit.
 
     Beyond the ends x is held at the end.
     """
     bounded = min(max(x, -end), end)
-    half = (end - fine) / coarse_step  # cells in each coarse part, a whole number
-    inner = 2.0 * fine / fine_step
     inside = abs(bounded) < fine
     right = bounded >= fine
-    step = fine_step if inside else coarse_step
+    rate = fine_rate if inside else coarse_rate
     origin = -fine if inside else (fine if right else -end)
-    first = half if inside else (half + inner if right else 0.0)
-    cells = inner if inside else half
-    place = (bounded - origin) / step
-    cell = min(max(math.floor(place), 0.0), math.floor(cells + 0.5) - 1.0)
-    return math.floor(first + cell + 0.5), place - cell, step
+    first = coarse_cells if inside else (coarse_cells + inner_cells if right else 0.0)
+    cells = inner_cells if inside else coarse_cells
+    place = (bounded - origin) * rate
+    cell = min(max(math.floor(place), 0.0), cells - 1.0)
+    return first + cell, place - cell, rate
 
 
 def hermite(

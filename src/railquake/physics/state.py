@@ -13,20 +13,24 @@ increment of displacement and the dashpots' force, in the order of `vehicle.kern
 # --- pier (Eqs. 9, 10): u, theta_1 (base), theta_2 (top); velocities; accelerations
 (U, THETA1, THETA2, U_V, THETA1_V, THETA2_V, U_A, THETA1_A, THETA2_A) = range(4, 13)
 
-# --- hinge (Eqs. 11, 12): hysteretic rotation, its last increment, energy, largest rotation, moment
-(Z, Z_STEP, EPS, X_MAX, MOMENT) = range(13, 18)
+# --- hinge (Eqs. 11, 12): hysteretic rotation, its last increment, energy, largest rotation,
+# moment; damage and the degradation that is known for it
+(Z, Z_STEP, EPS, X_MAX, MOMENT, DAMAGE, DEGRADED_A, DEGRADED_BETA, DEGRADED_LOG) = range(13, 22)
 
-# --- track's origin: position, velocity, last increment of position
-(TRACK_Y, TRACK_Z, TRACK_PHI, TRACK_VY, TRACK_VZ, TRACK_VPHI) = range(18, 24)
-(TRACK_STEP_Y, TRACK_STEP_Z, TRACK_STEP_PHI) = range(24, 27)
+# --- track's origin: position, velocity, last increment of position; sine and cosine of its roll
+(TRACK_Y, TRACK_Z, TRACK_PHI, TRACK_VY, TRACK_VZ, TRACK_VPHI) = range(22, 28)
+(TRACK_STEP_Y, TRACK_STEP_Z, TRACK_STEP_PHI, TRACK_SIN, TRACK_COS) = range(28, 33)
 
-# --- wheelset in track axes: Y, Z (negative: above the rails), psi; rates; sine and cosine of psi
-(SHIFT, HEIGHT, ROLL, SHIFT_V, HEIGHT_V, ROLL_V, ROLL_SIN, ROLL_COS) = range(27, 35)
+# --- wheelset from the track's origin in ground axes; in track axes: Y, Z (negative: above the
+# rails), psi; rates; sine and cosine of psi
+(ARM_Y, ARM_Z) = range(33, 35)
+(SHIFT, HEIGHT, ROLL, SHIFT_V, HEIGHT_V, ROLL_V, ROLL_SIN, ROLL_COS) = range(35, 43)
 
-# --- table cell of each side (left, right): first number in the table, weights, widths
-CELL = 35
+# --- table cell of each side (left, right): first number in the table, place within the cell;
+# for both sides: cells per metre and per radian
+CELL = 43
 CELL_ROWS = 5
-(CELL_BASE, CELL_SHIFT, CELL_WIDTH, CELL_ROLL, CELL_ROLL_WIDTH) = range(CELL_ROWS)
+(CELL_BASE, CELL_SHIFT, CELL_SHIFT_RATE, CELL_ROLL, CELL_ROLL_RATE) = range(CELL_ROWS)
 CELL_END = CELL + 2 * CELL_ROWS
 
 # --- table values at a cell's four corners, for each patch
