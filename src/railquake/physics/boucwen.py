@@ -40,12 +40,17 @@ __all__ = [
 
 
 def pinched_stiffness(
-    x: float, eps: float, k0: float, rho_p: float, sigma: float, u: float, eps_p: float
+    x: float, eps: float, k0: float, rho_p: float, per_sigma: float, u: float, per_eps_p: float
 ) -> float:
-    """Stiffness kp after pinching, N m/rad, at the committed rotation and energy."""
-    slip = math.exp(-0.5 * math.pow(abs(x) / sigma, u))
-    r2 = (eps / eps_p) * (eps / eps_p)
-    r8 = r2 * r2 * r2 * r2
+    """Stiffness kp after pinching, N m/rad, at the committed rotation and energy.
+
+    ``per_sigma`` and ``per_eps_p`` are 1/sigma and 1/eps_p.
+    """
+    slip = math.exp(-0.5 * math.pow(abs(x) * per_sigma, u))
+    r = eps * per_eps_p
+    r2 = r * r
+    r4 = r2 * r2
+    r8 = r4 * r4
     # beyond 80 the exponential is lost in the last digit
     onset = 1.0 - math.exp(-0.5 * r8) if r8 < 80.0 else 1.0
     return k0 * (1.0 - rho_p * slip * onset)
@@ -126,11 +131,11 @@ def advance(
     phi: float,
     delta_k: float,
     delta_f: float,
-    sigma: float,
+    per_sigma: float,
     u: float,
-    eps_p: float,
+    per_eps_p: float,
     rho_p: float,
-    mass: float,
+    per_mass: float,
     tolerance: float,
     max_iterations: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
@@ -152,8 +157,8 @@ def advance(
         Increment of rotation under no hinge moment, rad.
     flexibility : float
         Rotation per hinge moment, rad/(N m).
-    k0 ... mass : float
-        Parameters; ``rho_eps_m`` and ``rho_x`` as in `damage_index`.
+    k0 ... per_mass : float
+        Parameters; ``rho_eps_m`` and ``rho_x`` as in `damage_index`; 1/sigma, 1/eps_p and 1/m.
     tolerance : float
         Largest last correction of z, rad: Newton's error after it is of the order of its square.
     max_iterations : float
@@ -171,9 +176,10 @@ def advance(
     d, a, beta, log_a : float
         What is known of the degradation now.
     """
-    kp = pinched_stiffness(x, eps, k0, rho_p, sigma, u, eps_p)
+    kp = pinched_stiffness(x, eps, k0, rho_p, per_sigma, u, per_eps_p)
     backbone = alpha * kp
     hysteretic = (1.0 - alpha) * kp
+    energy = hysteretic * per_mass  # eps grows by this times z dx
     softening = 1.0 / (1.0 + flexibility * backbone)
     step_z = -flexibility * hysteretic * softening  # d(dx)/dz
     z_new = z_guess
@@ -189,7 +195,7 @@ def advance(
         reach = abs(x + step)
         grows = 1.0 if reach > x_max else 0.0
         now = damage_index(
-            eps + hysteretic * z_new * step / mass, max(x_max, reach), rho_eps_m, rho_x
+            eps + energy * z_new * step, max(x_max, reach), rho_eps_m, rho_x
         )
         a, beta, log_a = degradation_now(
             now, d, a, beta, log_a, phi, delta_k, delta_f, n, beta0
@@ -199,9 +205,9 @@ def advance(
             z_new, direction, a, beta, log_a, n, eta0, n * delta_f
         )
         # chain rule through eps(z, dx) and x_max(dx)
-        slope_z = slope_z + slope_d * rho_eps_m * hysteretic * step / mass
+        slope_z = slope_z + slope_d * rho_eps_m * energy * step
         slope_x = slope_d * (
-            rho_eps_m * hysteretic * z_new / mass + rho_x * grows * math.copysign(1.0, x + step)
+            rho_eps_m * energy * z_new + rho_x * grows * math.copysign(1.0, x + step)
         )
         derivative = 1.0 - slope_z * step - (slope + slope_x * step) * step_z
         correction = (z_new - z - slope * step) / derivative
@@ -215,7 +221,7 @@ def advance(
     return (
         step,
         z_new,
-        eps + hysteretic * z_new * step / mass,
+        eps + energy * z_new * step,
         max(x_max, abs(x + step)),
         backbone * (x + step) + hysteretic * z_new,
         backbone + hysteretic * z_x,
@@ -249,11 +255,11 @@ def advance_linearised(
     phi: float,
     delta_k: float,
     delta_f: float,
-    sigma: float,
+    per_sigma: float,
     u: float,
-    eps_p: float,
+    per_eps_p: float,
     rho_p: float,
-    mass: float,
+    per_mass: float,
     tolerance: float,
     max_iterations: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
@@ -261,7 +267,7 @@ def advance_linearised(
     step, z_new, eps_new, reach, moment, tangent, _, d, a, beta, log_a = advance(
         x, z, z_guess, eps, x_max, d, a, beta, log_a, free_step, flexibility,
         k0, alpha, n, eta0, beta0, rho_eps_m, rho_x, phi, delta_k, delta_f,
-        sigma, u, eps_p, rho_p, mass, 0.0, 1.0,
+        per_sigma, u, per_eps_p, rho_p, per_mass, 0.0, 1.0,
     )  # fmt: skip
     return step, z_new, eps_new, reach, moment, tangent, 0.0, d, a, beta, log_a
 
@@ -288,11 +294,11 @@ def advance_elastic(
     phi: float,
     delta_k: float,
     delta_f: float,
-    sigma: float,
+    per_sigma: float,
     u: float,
-    eps_p: float,
+    per_eps_p: float,
     rho_p: float,
-    mass: float,
+    per_mass: float,
     tolerance: float,
     max_iterations: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:

@@ -29,11 +29,11 @@ RHO_X: Final = 30  # rho_x / xu
 PHI: Final = 31
 DELTA_K: Final = 32
 DELTA_F: Final = 33
-SIGMA: Final = 34
+PER_SIGMA: Final = 34  # 1/sigma
 PINCH_U: Final = 35
-EPS_P: Final = 36
+PER_EPS_P: Final = 36  # 1/eps_p
 RHO_P: Final = 37
-HINGE_MASS: Final = 38
+PER_HINGE_MASS: Final = 38  # 1/m
 TOLERANCE: Final = 39  # of z, rad
 MAX_ITERATIONS: Final = 40
 

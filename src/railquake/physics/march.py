@@ -15,7 +15,14 @@ from railquake.physics.contact import normal_force, onset_hysteresis
 from railquake.physics.creep import reduction_shen_hedrick_elkins
 from railquake.physics.elementary import sin_cos
 from railquake.physics.pier import move_structure, move_track
-from railquake.physics.profiles import FIELDS, Geometry, axis_cell, hermite, zone_contact
+from railquake.physics.profiles import (
+    FIELDS,
+    POSITIVE,
+    Geometry,
+    axis_cell,
+    hermite,
+    zone_contact,
+)
 from railquake.physics.vehicle import (
     BLOCK,
     DOF_COUNT,
@@ -31,6 +38,7 @@ __all__ = ["LANES", "march", "step"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
+FAR = 0.5e-3  # m; see `look_up`
 LANES = 1  # scenarios abreast; bound when a kernel is made
 
 
@@ -163,9 +171,9 @@ def locate(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
 def fetch(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
     """Stage: loads only, the table's values at the four corners of each cell."""
     table = geometry.table
-    next_roll = geometry.shift_nodes * 2 * FIELDS
+    next_roll = (geometry.shift_nodes * 2 * FIELDS) & POSITIVE
     for side in range(2):
-        base = int(S[state.CELL + side * state.CELL_ROWS + state.CELL_BASE, lane])
+        base = int(S[state.CELL + side * state.CELL_ROWS + state.CELL_BASE, lane]) & POSITIVE
         for zone in range(2):
             row = state.CORNERS + (2 * side + zone) * state.CORNER_ROWS
             place = base + zone * FIELDS
@@ -257,13 +265,15 @@ def interpolate(S: Array, lane: int) -> None:
 def look_up(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
     """`fetch` and `interpolate` in one, for one scenario: only what a patch needs.
 
-    An open patch needs its gap and nothing else.
+    A patch that is open by more than `FAR` needs no more than to be seen so: linear interpolation
+    errs by less than that.
     """
     table = geometry.table
-    next_roll = geometry.shift_nodes * 2 * FIELDS
+    height = S[state.HEIGHT, lane]
+    next_roll = (geometry.shift_nodes * 2 * FIELDS) & POSITIVE
     for side in range(2):
         cell = state.CELL + side * state.CELL_ROWS
-        base = int(S[cell + state.CELL_BASE, lane])
+        base = int(S[cell + state.CELL_BASE, lane]) & POSITIVE
         w = S[cell + state.CELL_SHIFT, lane]
         rate = S[cell + state.CELL_SHIFT_RATE, lane]
         w_roll = S[cell + state.CELL_ROLL, lane]
@@ -274,14 +284,16 @@ def look_up(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
             c10 = c00 + 2 * FIELDS
             c01 = c00 + next_roll
             c11 = c10 + next_roll
-            gap, slope, gap_psi = blend_gap(
-                w, w_roll, rate, roll_rate,
-                table[c00], table[c10], table[c01], table[c11],
-                table[c00 + 1], table[c10 + 1], table[c01 + 1], table[c11 + 1],
-                table[c00 + 2], table[c10 + 2], table[c01 + 2], table[c11 + 2],
-            )  # fmt: skip
-            S[patch + state.PATCH_GAP, lane] = gap
-            if gap < S[state.HEIGHT, lane]:
+            near = blend(w, w_roll, table[c00], table[c10], table[c01], table[c11])
+            S[patch + state.PATCH_GAP, lane] = near
+            if near < height + FAR:
+                gap, slope, gap_psi = blend_gap(
+                    w, w_roll, rate, roll_rate,
+                    table[c00], table[c10], table[c01], table[c11],
+                    table[c00 + 1], table[c10 + 1], table[c01 + 1], table[c11 + 1],
+                    table[c00 + 2], table[c10 + 2], table[c01 + 2], table[c11 + 2],
+                )  # fmt: skip
+                S[patch + state.PATCH_GAP, lane] = gap
                 S[patch + state.PATCH_SLOPE, lane] = slope
                 S[patch + state.PATCH_GAP_PSI, lane] = gap_psi
                 for k in range(4):
@@ -526,11 +538,15 @@ def measure(S: Array, Q: Array, lane: int) -> None:
     """Stage: peaks, losses and times that need every step."""
     dt = Q[constant.DT, lane]
     half = 0.5 * dt
-    for k in range(3):
-        S[state.LOST_IMPACT + k, lane] += half * (
-            S[state.IMPACT_POWER_OLD + k, lane] + S[state.IMPACT_POWER + k, lane]
-        )
-        S[state.IMPACT_POWER_OLD + k, lane] = S[state.IMPACT_POWER + k, lane]
+    impact = S[state.IMPACT_POWER, lane]
+    creepage = S[state.CREEP_POWER, lane]
+    spin = S[state.SPIN_POWER, lane]
+    S[state.LOST_IMPACT, lane] += half * (S[state.IMPACT_POWER_OLD, lane] + impact)
+    S[state.LOST_CREEP, lane] += half * (S[state.CREEP_POWER_OLD, lane] + creepage)
+    S[state.SPIN_INPUT, lane] += half * (S[state.SPIN_POWER_OLD, lane] + spin)
+    S[state.IMPACT_POWER_OLD, lane] = impact
+    S[state.CREEP_POWER_OLD, lane] = creepage
+    S[state.SPIN_POWER_OLD, lane] = spin
     on = S[state.ON_TRACK, lane]
     lateral = -S[state.FORCE_Y, lane]
     load_left = S[state.LOAD_LEFT, lane]

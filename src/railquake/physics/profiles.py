@@ -45,6 +45,9 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 # Fields of one zone at one node of the table.
 FIELDS = 7  # G, dG/dY, dG/dpsi, height of the contact point, K, f22/delta, f23/(delta^1.5 r)
+# An index masked with this is seen to be positive, so that no Python-style wrap-around from the
+# array's end is compiled for it.
+POSITIVE = 0x7FFFFFFF
 MIN_CURVATURE = 0.05  # 1/m; see `zone_contact`
 REFINEMENTS = 2
 
@@ -151,7 +154,7 @@ def rail_at(
     """Height (down) and slope dz/dy of the rail at y; beside the rail, those of its last point."""
     last = len(height) - 1
     place = min(max((y - start) / step, 0.0), last - 1e-9)
-    cell = int(place)
+    cell = int(place) & POSITIVE
     z, dz = hermite(
         place - cell, height[cell], height[cell + 1], step * slope[cell], step * slope[cell + 1]
     )
@@ -202,10 +205,10 @@ def zone_contact(
     end = len(rail_z) - 1 - 1e-9
     best = first
     lowest = 1e9
-    for i in range(first, last):
+    for i in range(first & POSITIVE, last & POSITIVE):
         y = shift + wheel_y[i] * cosine - wheel_z[i] * sine
         place = min(max((y - start) * inverse, 0.0), end)
-        cell = int(place)
+        cell = int(place) & POSITIVE
         rail = rail_z[cell] + (place - cell) * (rail_z[cell + 1] - rail_z[cell])
         gap = rail - wheel_y[i] * sine - wheel_z[i] * cosine
         best = i if gap < lowest else best
