@@ -10,8 +10,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from railquake.assemble import assemble as assemble
-    from railquake.assess import assess as assess
+    from railquake.assembly import assemble as assemble
+    from railquake.assessment import assess as assess
     from railquake.errors import InputError as InputError
     from railquake.inputs.motion import GroundMotion as GroundMotion
     from railquake.inputs.motion import read_motion as read_motion
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from railquake.inputs.scenario import load_scenario as load_scenario
     from railquake.inputs.scenario import scenario as scenario
     from railquake.response import Response as Response
-    from railquake.simulate import simulate as simulate
+    from railquake.simulation import simulate as simulate
 
 __version__ = "0.1.0"
 
@@ -29,12 +29,12 @@ _HOMES = {
     "InputError": "railquake.errors",
     "Response": "railquake.response",
     "Scenario": "railquake.inputs.scenario",
-    "assemble": "railquake.assemble",
-    "assess": "railquake.assess",
+    "assemble": "railquake.assembly",
+    "assess": "railquake.assessment",
     "load_scenario": "railquake.inputs.scenario",
     "read_motion": "railquake.inputs.motion",
     "scenario": "railquake.inputs.scenario",
-    "simulate": "railquake.simulate",
+    "simulate": "railquake.simulation",
 }
 
 __all__ = ["__version__", *_HOMES]

@@ -14,7 +14,7 @@ from railquake.physics.vehicle import kernel_order
 if TYPE_CHECKING:
     import xarray
 
-    from railquake.assemble import System
+    from railquake.assembly import System
 
 __all__ = ["EVENT_NAMES", "Event", "Response", "channels"]
 
@@ -54,10 +54,20 @@ _CHANNELS = (
     ("lateral_force_filtered_n", state.FILTER + 2, "N", "the same, low-passed"),
     ("wheel_load_left_filtered_n", state.FILTER + 6, "N", "low-passed"),
     ("wheel_load_right_filtered_n", state.FILTER + 10, "N", "low-passed"),
-    ("gap_left_tread_m", state.PATCH + 1, "m", "penetration of the left tread"),
-    ("gap_left_flange_m", state.PATCH + state.PATCH_ROWS + 1, "m", "... left flange"),
-    ("gap_right_tread_m", state.PATCH + 2 * state.PATCH_ROWS + 1, "m", "... right tread"),
-    ("gap_right_flange_m", state.PATCH + 3 * state.PATCH_ROWS + 1, "m", "... right flange"),
+    ("penetration_left_tread_m", state.PATCH + 1, "m", "vertical, left tread; negative: gap"),
+    ("penetration_left_flange_m", state.PATCH + state.PATCH_ROWS + 1, "m", "vertical, left flange"),
+    (
+        "penetration_right_tread_m",
+        state.PATCH + 2 * state.PATCH_ROWS + 1,
+        "m",
+        "vertical, right tread",
+    ),
+    (
+        "penetration_right_flange_m",
+        state.PATCH + 3 * state.PATCH_ROWS + 1,
+        "m",
+        "vertical, right flange",
+    ),
     ("events", state.FLAGS, "1", "sum of 2^k over the events k that hold"),
 )
 
@@ -146,7 +156,7 @@ class Response:
 
     @property
     def derailment_mode(self) -> str | None:
-        """How it derailed: ``slide-off right``, ``... left``, ``overturned right``, ``... left``."""
+        """How it derailed: ``slide-off`` or ``overturned``, to the ``left`` or ``right``."""
         end = self.end[:, 0]
         if end[state.ON_TRACK] > 0.0 or end[state.DIVERGED] > 0.0:
             return None
@@ -157,8 +167,9 @@ class Response:
     @property
     def time(self) -> Array:
         """Times of the history, s."""
-        frame: float = self.system.dt * self.system.frame_steps
-        return frame * np.arange(len(self.frames))
+        frame = self.system.dt * self.system.frame_steps
+        times: Array = np.arange(len(self.frames), dtype=float) * frame
+        return times
 
     def channel(self, name: str) -> Array:
         """One channel of the history by its name, shape (frames + 1,)."""

@@ -194,12 +194,8 @@ def advance(
         direction = -1.0 if step * z_new < 0.0 else 1.0
         reach = abs(x + step)
         grows = 1.0 if reach > x_max else 0.0
-        now = damage_index(
-            eps + energy * z_new * step, max(x_max, reach), rho_eps_m, rho_x
-        )
-        a, beta, log_a = degradation_now(
-            now, d, a, beta, log_a, phi, delta_k, delta_f, n, beta0
-        )
+        now = damage_index(eps + energy * z_new * step, max(x_max, reach), rho_eps_m, rho_x)
+        a, beta, log_a = degradation_now(now, d, a, beta, log_a, phi, delta_k, delta_f, n, beta0)
         d = now
         slope, slope_z, slope_d = hysteretic_slope(
             z_new, direction, a, beta, log_a, n, eta0, n * delta_f

@@ -9,7 +9,7 @@ from typing import Final
 DT: Final = 0  # time step, s
 FRAME_STEPS: Final = 1  # time steps in a frame
 
-# --- pier (Eqs. 9, 10) -------------------------------------------------------------------------
+# --- pier (Eqs. 9, 10) --------------------------------------------------------------------------
 PIER_LOAD: Final = 2  # mass that the ground's acceleration acts on, kg; 0 at grade
 M_U: Final = 3
 M_1: Final = 4
@@ -18,7 +18,7 @@ K: Final = 6  # column stiffness: uu, u1, u2, 11, 12, 22 (hinge apart)
 C: Final = 12  # Rayleigh damping, same order
 FLEX: Final = 18  # inverse of Newmark's effective matrix (hinge apart), same order
 
-# --- hinge (Eqs. 11, 12) -----------------------------------------------------------------------
+# --- hinge (Eqs. 11, 12) ------------------------------------------------------------------------
 K0: Final = 24
 ALPHA: Final = 25
 N: Final = 26
@@ -37,14 +37,14 @@ PER_HINGE_MASS: Final = 38  # 1/m
 TOLERANCE: Final = 39  # of z, rad
 MAX_ITERATIONS: Final = 40
 
-# --- track: displacement of its origin = MAP x displacement of the pier's top ---------------------
+# --- track: displacement of its origin = MAP x displacement of the pier's top -------------------
 MAP_U: Final = 41  # Y_t = MAP_U u + MAP_H phi
 MAP_H: Final = 42
 MAP_E: Final = 43  # Z_t = MAP_E phi
 MAP_PHI: Final = 44  # phi_t = MAP_PHI phi, phi = -theta_2
 REACTION: Final = 45  # 1: the contact forces act on the pier; 0: decoupled, at grade, prescribed
 
-# --- vehicle and contact ---------------------------------------------------------------------------
+# --- vehicle and contact ------------------------------------------------------------------------
 ZHAI_PSI: Final = 46
 ZHAI_PHI: Final = 47
 GRAVITY: Final = 48
@@ -55,11 +55,11 @@ INVERSE_SPEED: Final = 52  # 1/max(V, bound), s/m
 ALPHA_R: Final = 53  # hysteresis of Eq. 7 or calibrated
 ONSET_BOUND: Final = 54  # m/s
 
-# --- table axes, see `profiles.axis_cell`: fine, end, fine rate, coarse rate, coarse, inner cells --
+# --- table axes, see `profiles.axis_cell`: fine, end, fine rate, coarse rate, coarse, inner cells
 SHIFT_AXIS: Final = 55
 ROLL_AXIS: Final = 61
 
-# --- thresholds --------------------------------------------------------------------------------------
+# --- thresholds ---------------------------------------------------------------------------------
 REFERENCE_ROLL: Final = 67
 TIP_Y: Final = 68  # flange tip in wheelset axes of the right-hand wheel, m
 TIP_Z: Final = 69

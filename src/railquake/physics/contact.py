@@ -180,7 +180,9 @@ def onset_hysteresis(
     return kept if closed else 0.0
 
 
-def normal_force(delta: float, rate: float, stiffness: float, hysteresis: float) -> tuple[float, float]:
+def normal_force(
+    delta: float, rate: float, stiffness: float, hysteresis: float
+) -> tuple[float, float]:
     """Normal force (Eq. 5), never negative, and its elastic part, N."""
     elastic = stiffness * delta * math.sqrt(delta)
     return max(elastic * (1.0 + hysteresis * rate), 0.0), elastic

@@ -86,17 +86,14 @@ def kalker_coefficients(a_over_b: Array, poisson: float) -> tuple[Array, Array, 
     place = np.where(ratio <= 1.0, ratio, 2.0 - 1.0 / ratio)
     knots = np.where(KALKER_A_OVER_B <= 1.0, KALKER_A_OVER_B, 2.0 - 1.0 / KALKER_A_OVER_B)
     lagrange = np.array(
-        [
-            np.prod([(poisson - p) / (q - p) for p in _POISSON if p != q])
-            for q in _POISSON
-        ]
+        [np.prod([(poisson - p) / (q - p) for p in _POISSON if p != q]) for q in _POISSON]
     )
     c11, c22, c23 = (np.interp(place, knots, table @ lagrange) for table in (_C11, _C22, _C23))
     return c11, c22, c23
 
 
 def reduction_shen_hedrick_elkins(linear: float, limit: float) -> float:
-    """Shen, Hedrick and Elkins (1983): F = mu N (tau - tau^2/3 + tau^3/27), sliding from tau = 3."""
+    """Shen, Hedrick, Elkins (1983): F = mu N (tau - tau^2/3 + tau^3/27), sliding from tau = 3."""
     size = abs(linear)
     tau = size / max(limit, 1e-30)
     partial = 1.0 - tau / 3.0 + tau * tau / 27.0

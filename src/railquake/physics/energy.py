@@ -100,7 +100,11 @@ def audit(start: Array, end: Array, constants: Array) -> EnergyAudit:
     pier_mass = q[constant.M_U : constant.M_U + 3]
     upper = q[constant.K : constant.K + 6]
     column = np.array(
-        [[upper[0], upper[1], upper[2]], [upper[1], upper[3], upper[4]], [upper[2], upper[4], upper[5]]]
+        [
+            [upper[0], upper[1], upper[2]],
+            [upper[1], upper[3], upper[4]],
+            [upper[2], upper[4], upper[5]],
+        ]
     )
     block = constant.VEHICLE + dofs // 3
     inverse_mass = q[block : block + dofs]

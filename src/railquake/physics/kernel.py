@@ -199,7 +199,7 @@ def _keep_on_disk(dispatcher: Any, folder: Path) -> None:
     """Give the dispatcher an on-disk cache in ``folder``, which the variant alone names."""
     from numba.core import caching
 
-    class Locator(caching._CacheLocator):  # type: ignore[misc]
+    class Locator(caching._CacheLocator):
         def __init__(self, py_file: str) -> None:
             self._py_file = py_file
 
@@ -216,10 +216,10 @@ def _keep_on_disk(dispatcher: Any, folder: Path) -> None:
         def from_function(cls, py_func: Law, py_file: str) -> Locator:
             return cls(py_file)
 
-    class Implementation(caching.CompileResultCacheImpl):  # type: ignore[misc]
-        _locator_classes = [Locator]
+    class Implementation(caching.CompileResultCacheImpl):
+        _locator_classes = [Locator]  # type: ignore[list-item]  # noqa: RUF012
 
-    class VariantCache(caching.FunctionCache):  # type: ignore[misc]
+    class VariantCache(caching.FunctionCache):
         _impl_class = Implementation
 
         def _index_key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
@@ -231,4 +231,5 @@ def _keep_on_disk(dispatcher: Any, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         return  # an unwritable cache costs a compilation in each process, nothing more
-    dispatcher._cache = VariantCache(dispatcher.py_func)
+    variant: Any = VariantCache
+    dispatcher._cache = variant(dispatcher.py_func)

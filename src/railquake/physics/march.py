@@ -211,9 +211,9 @@ def blend_gap(
 ) -> tuple[float, float, float]:
     """Gap G within a cell and its derivatives by shift and roll.
 
-    ``rate`` and ``roll_rate`` are cells per metre and per radian.  Cubic (Hermite) in the shift from the corners' G and dG/dY, then in the roll from these and
-    dG/dpsi.  The derivatives are those of this very interpolation, so that the normal force
-    remains the gradient of the gap.
+    ``rate`` and ``roll_rate`` are cells per metre and per radian.  Cubic (Hermite) in the shift
+    from the corners' G and dG/dY, then in the roll from these and dG/dpsi.  The derivatives are
+    those of this very interpolation, so that the normal force remains the gradient of the gap.
     """
     width = 1.0 / rate
     roll_width = 1.0 / roll_rate
@@ -660,17 +660,13 @@ def watch(S: Array, Q: Array, lane: int) -> None:
     holds_onset = abs(roll) >= Q[constant.REFERENCE_ROLL, lane]
     holds_over = clearance > 0.0
     holds_derailed = across > 0.0 or abs(shift) >= Q[constant.SHIFT_LIMIT, lane]
-    holds_overturned = abs(roll) >= Q[constant.ROLL_LIMIT, lane] or (
-        beyond > 0.0 and holds_onset
-    )
+    holds_overturned = abs(roll) >= Q[constant.ROLL_LIMIT, lane] or (beyond > 0.0 and holds_onset)
     flags = S[state.FLAGS, lane]
     time = S[state.TIME, lane]
     was_up = math.floor(flags * 0.5) - 2.0 * math.floor(flags * 0.25)
     now_up = on if holds_uplift else 0.0
     S[state.UPLIFTS, lane] += now_up * (1.0 - was_up)
-    S[state.UPLIFT_END, lane] = (
-        time if was_up * (1.0 - now_up) > 0.0 else S[state.UPLIFT_END, lane]
-    )
+    S[state.UPLIFT_END, lane] = time if was_up * (1.0 - now_up) > 0.0 else S[state.UPLIFT_END, lane]
     sum_of_flags = note(S, state.FLANGE_CONTACT, holds_flange, on, time, lane)
     sum_of_flags += note(S, state.UPLIFT, holds_uplift, on, time, lane)
     sum_of_flags += note(S, state.ONSET, holds_onset, on, time, lane)

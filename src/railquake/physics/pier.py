@@ -241,8 +241,6 @@ def follow_track(S: Array, Q: Array, lane: int) -> None:
     row = state.TRACK_CUBIC
     S[state.U, lane] = S[state.TRACK_Y, lane]
     S[state.U_V, lane] = S[state.TRACK_VY, lane]
-    S[state.U_A, lane] = (
-        rate * rate * (2.0 * S[row + 2, lane] + 6.0 * place * S[row + 3, lane])
-    )
+    S[state.U_A, lane] = rate * rate * (2.0 * S[row + 2, lane] + 6.0 * place * S[row + 3, lane])
     S[state.THETA2, lane] = -S[state.TRACK_PHI, lane]
     S[state.THETA2_V, lane] = -S[state.TRACK_VPHI, lane]

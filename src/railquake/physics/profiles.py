@@ -138,9 +138,7 @@ def axis_cell(
     return first + cell, place - cell, rate
 
 
-def hermite(
-    t: float, f0: float, f1: float, d0: float, d1: float
-) -> tuple[float, float]:
+def hermite(t: float, f0: float, f1: float, d0: float, d1: float) -> tuple[float, float]:
     """Cubic Hermite polynomial on 0 <= t <= 1 and its derivative (d0, d1 per unit of t)."""
     rise = f1 - f0
     c2 = 3.0 * rise - 2.0 * d0 - d1

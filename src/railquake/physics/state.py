@@ -8,7 +8,7 @@ increment of displacement and the dashpots' force, in the order of `vehicle.kern
 # ruff: noqa: E501
 
 # --- ground: acceleration and its change per step within the frame, m/s2; z is positive down
-(GROUND, GROUND_SLOPE, GROUND_Z, GROUND_Z_SLOPE) = range(0, 4)
+(GROUND, GROUND_SLOPE, GROUND_Z, GROUND_Z_SLOPE) = range(4)
 
 # --- pier (Eqs. 9, 10): u, theta_1 (base), theta_2 (top); velocities; accelerations
 (U, THETA1, THETA2, U_V, THETA1_V, THETA2_V, U_A, THETA1_A, THETA2_A) = range(4, 13)

@@ -198,9 +198,7 @@ def damp(S: Array, Q: Array, lane: int) -> None:
     """Stage: energy lost to the dashpots during this step."""
     power = 0.0
     for i in range(DOF_COUNT):
-        power += (
-            S[state.VEHICLE + DOF_COUNT + i, lane] * S[state.VEHICLE + 5 * DOF_COUNT + i, lane]
-        )
+        power += S[state.VEHICLE + DOF_COUNT + i, lane] * S[state.VEHICLE + 5 * DOF_COUNT + i, lane]
     S[state.LOST_DASHPOTS, lane] += (
         0.5 * Q[constant.DT, lane] * (S[state.DASHPOT_POWER, lane] + power)
     )

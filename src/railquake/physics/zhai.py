@@ -13,9 +13,7 @@ Source: Zhai (1996), International Journal for Numerical Methods in Engineering 
 __all__ = ["predict_displacement", "predict_velocity"]
 
 
-def predict_displacement(
-    v: float, a: float, a_before: float, dt: float, psi: float
-) -> float:
+def predict_displacement(v: float, a: float, a_before: float, dt: float, psi: float) -> float:
     """Increment X(n+1) - X(n) of Eq. 2."""
     return dt * (v + dt * ((0.5 + psi) * a - psi * a_before))
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from railquake.inputs.profile import Profile
     from railquake.inputs.wheelrail import WheelRail
 
-__all__ = ["ROLL_AXIS", "SHIFT_AXIS", "FLOOR", "build_geometry", "rail_centre", "with_table"]
+__all__ = ["FLOOR", "ROLL_AXIS", "SHIFT_AXIS", "build_geometry", "rail_centre", "with_table"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -104,9 +103,13 @@ def _wheel_grid(wheel: Profile) -> tuple[Array, Array, Array, Array, Array]:
     y = PchipInterpolator(arc, wheel.y)
     z = PchipInterpolator(arc, wheel.z)
     nearest = np.searchsorted(0.5 * (arc[1:] + arc[:-1]), at)
-    return y(at), z(at), step * y.derivative()(at), step * z.derivative()(at), wheel.curvature[
-        nearest
-    ].copy()
+    return (
+        y(at),
+        z(at),
+        step * y.derivative()(at),
+        step * z.derivative()(at),
+        wheel.curvature[nearest].copy(),
+    )
 
 
 def _rail_grid(rail: Profile, centre: float) -> tuple[float, Array, Array, Array]:
@@ -130,9 +133,7 @@ def _rail_grid(rail: Profile, centre: float) -> tuple[float, Array, Array, Array
     count = int(np.ceil((y[-1] + beside - low) / RAIL_SPACING)) + 1
     at = low + RAIL_SPACING * np.arange(count)
     inside = (at >= y[0]) & (at <= y[-1])
-    height = np.where(
-        at < y[0], z[0] + STEEPEST * (y[0] - at), z[-1] + STEEPEST * (at - y[-1])
-    )
+    height = np.where(at < y[0], z[0] + STEEPEST * (y[0] - at), z[-1] + STEEPEST * (at - y[-1]))
     slope = np.where(at < y[0], -STEEPEST, STEEPEST)
     height[inside] = curve(at[inside])
     slope[inside] = curve.derivative()(at[inside])
@@ -191,5 +192,3 @@ def _table(digest: str, held: _Held) -> Array:
     except OSError:
         pass  # a cache that cannot be written costs a second in each process, nothing more
     return table
-
-

@@ -254,8 +254,6 @@ def critical_time_step(
     return low
 
 
-
-
 def contact_forces(
     S: Array, Q: Array, geometry: Geometry, stages: Callable[[Array, Array, Geometry], None]
 ) -> ContactForces:

@@ -10,15 +10,15 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter
 
-from railquake.assemble import statics
-from railquake.assemble.geometry import (
+from railquake.assembly import statics
+from railquake.assembly.geometry import (
     ROLL_AXIS,
     SHIFT_AXIS,
     build_geometry,
     rail_centre,
     with_table,
 )
-from railquake.assemble.vehicle import VehicleMatrices, vehicle_matrices
+from railquake.assembly.vehicle import VehicleMatrices, vehicle_matrices
 from railquake.errors import InputError
 from railquake.inputs.profile import flange_tip
 from railquake.inputs.support import AtGrade, Pier, PrescribedTrack
@@ -162,9 +162,7 @@ def assemble(scenario: Scenario) -> System:
     load = 0.5 * float(matrices.mass[1::3].sum()) * GRAVITY
     q[constant.STATIC_WHEEL_LOAD] = load
 
-    stiffness, hinge_law, parameters = _fill_support(
-        q, support, solver, scenario.vehicle.mass
-    )
+    stiffness, hinge_law, parameters = _fill_support(q, support, solver, scenario.vehicle.mass)
     if isinstance(support, PrescribedTrack):
         laws[pier.move_structure] = pier.hold_structure
         laws[pier.move_track] = pier.follow_track
@@ -226,9 +224,7 @@ def assemble(scenario: Scenario) -> System:
     for array in (drive, *geometry):
         if isinstance(array, np.ndarray):
             array.setflags(write=False)
-    return System(
-        scenario, ground, matrices, S, Q, geometry, drive, laws, critical, load
-    )
+    return System(scenario, ground, matrices, S, Q, geometry, drive, laws, critical, load)
 
 
 def _sizes(matrices: VehicleMatrices) -> dict[str, int]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from railquake.assemble import System, assemble
+from railquake.assembly import System, assemble
 from railquake.physics import state
 from railquake.physics.energy import audit
 from railquake.physics.kernel import SCALAR, Target
