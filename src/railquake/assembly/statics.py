@@ -17,8 +17,8 @@ __all__ = ["UNKNOWN_DEGRADATION", "ContactForces", "critical_time_step", "monoto
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-# Damage for which no degradation is known, see `boucwen.degradation_now`.
-UNKNOWN_DEGRADATION = (-1.0, 0.0, 0.0, 0.0)
+# Nothing known of degradation and pinching: no damage is negative, see `boucwen.degradation_now`.
+UNKNOWN_DEGRADATION = (-1.0, 0.0, 0.0, 0.0, 0.0)
 
 # (displacement, velocity of the wheelset; track y, z, phi) -> forces on the wheelset and on the
 # pier's top node, both in ground axes

@@ -110,10 +110,7 @@ class System:
         laws = dict(self.laws)
         if target.one_scenario:
             # what a patch does not need is not computed; many abreast must do it all the same
-            laws[march.patch_forces] = march.closed_patch_forces
-            if march.fetch not in laws:
-                laws[march.fetch] = march.look_up
-                laws[march.interpolate] = march.skip_interpolate
+            laws[march.press] = march.press_closed
         return bind(march.march, target, laws, _sizes(self.vehicle))
 
 
@@ -146,12 +143,12 @@ def assemble(scenario: Scenario) -> System:
     if solver.contact == "table":
         geometry = with_table(geometry)
     else:
-        laws[march.fetch] = march.search_grid
+        laws[march.patch_at] = march.search_grid
         laws[march.locate] = march.skip_locate
-        laws[march.interpolate] = march.skip_interpolate
+        laws[march.fetch] = march.skip_fetch
 
     S = np.zeros((state.VEHICLE + state.VEHICLE_BLOCKS * dofs, 1))
-    Q = np.zeros((constant.VEHICLE + dofs // 3 + 3 * dofs + 2 * dofs * dofs, 1))
+    Q = np.zeros((constant.VEHICLE + dofs // 3 + dofs + dofs * (dofs + 1), 1))
     q = Q[:, 0]
     q[constant.DT] = solver.dt
     q[constant.RATE] = 1.0 / solver.dt
@@ -181,6 +178,8 @@ def assemble(scenario: Scenario) -> System:
     track_map[:, 2] = (-q[constant.MAP_H], -q[constant.MAP_E], -q[constant.MAP_PHI])
     track_map[0, 0] = q[constant.MAP_U]
     S[state.ON_TRACK] = 1.0
+    for side in range(2):  # no cell has been fetched yet
+        S[state.CELL + side * state.CELL_ROWS + state.CELL_HELD] = -1.0
     S[state.LOWEST_LOAD] = load
     S[state.PEAK_CLEARANCE] = -1.0
     S[state.FIRST_TIME : state.FIRST_TIME + state.EVENTS] = -1.0
@@ -232,6 +231,7 @@ def _sizes(matrices: VehicleMatrices) -> dict[str, int]:
     return {
         "DOF_COUNT": len(matrices.mass),
         "BLOCK": lateral_block(matrices.stiffness, matrices.damping),
+        "PACKED": len(matrices.mass) * (len(matrices.mass) + 1) // 2,
     }
 
 
@@ -264,13 +264,12 @@ def _drive(scenario: Scenario, ground: GroundMotion, frame: float) -> Array:
 
 def _fill_vehicle(q: Array, scenario: Scenario, matrices: VehicleMatrices) -> None:
     order = kernel_order(len(matrices.mass))
+    upper = np.triu_indices(len(order))
     rows = (
         matrices.mass[0::3],
         1.0 / matrices.mass[order],
-        np.where(order % 3 == 0, 1.0, 0.0),
-        np.where(order % 3 == 1, 1.0, 0.0),
-        matrices.stiffness[np.ix_(order, order)].ravel(),
-        matrices.damping[np.ix_(order, order)].ravel(),
+        matrices.stiffness[np.ix_(order, order)][upper],
+        matrices.damping[np.ix_(order, order)][upper],
     )
     q[constant.VEHICLE :] = np.concatenate(rows)
     q[constant.ZHAI_PSI] = scenario.solver.psi

@@ -27,15 +27,20 @@ Gomez and DeJong (2023).
 
 import math
 
+from railquake.physics.elementary import exponential, power
+
 __all__ = [
     "advance",
     "advance_elastic",
     "advance_linearised",
     "damage_index",
     "degradation",
+    "degradation_extrapolated",
     "degradation_now",
     "hysteretic_slope",
     "pinched_stiffness",
+    "pinched_stiffness_kept",
+    "pinched_stiffness_now",
 ]
 
 
@@ -46,13 +51,13 @@ def pinched_stiffness(
 
     ``per_sigma`` and ``per_eps_p`` are 1/sigma and 1/eps_p.
     """
-    slip = math.exp(-0.5 * math.pow(abs(x) * per_sigma, u))
+    slip = exponential(-0.5 * power(abs(x) * per_sigma, u))
     r = eps * per_eps_p
     r2 = r * r
     r4 = r2 * r2
     r8 = r4 * r4
     # beyond 80 the exponential is lost in the last digit
-    onset = 1.0 - math.exp(-0.5 * r8) if r8 < 80.0 else 1.0
+    onset = 1.0 - exponential(-0.5 * r8) if r8 < 80.0 else 1.0
     return k0 * (1.0 - rho_p * slip * onset)
 
 
@@ -65,9 +70,9 @@ def degradation(
     d: float, phi: float, delta_k: float, delta_f: float, n: float, beta0: float
 ) -> tuple[float, float, float]:
     """A, beta and d(ln A)/dd at the damage d."""
-    pk = math.exp(-phi * d)
-    a = math.exp(-delta_k * d * pk)
-    return a, beta0 * a * math.exp(n * delta_f * d), -delta_k * pk * (1.0 - phi * d)
+    pk = exponential(-phi * d)
+    a = exponential(-delta_k * d * pk)
+    return a, beta0 * a * exponential(n * delta_f * d), -delta_k * pk * (1.0 - phi * d)
 
 
 def degradation_now(
@@ -88,6 +93,51 @@ def degradation_now(
     return degradation(d, phi, delta_k, delta_f, n, beta0)
 
 
+def degradation_extrapolated(
+    d: float,
+    d_known: float,
+    a: float,
+    beta: float,
+    log_a: float,
+    phi: float,
+    delta_k: float,
+    delta_f: float,
+    n: float,
+    beta0: float,
+) -> tuple[float, float, float]:
+    """`degradation` at d near ``d_known``, to the first order in the difference."""
+    rise = d - d_known
+    return a * (1.0 + log_a * rise), beta * (1.0 + (log_a + n * delta_f) * rise), log_a
+
+
+def pinched_stiffness_now(
+    kp: float,
+    x: float,
+    eps: float,
+    k0: float,
+    rho_p: float,
+    per_sigma: float,
+    u: float,
+    per_eps_p: float,
+) -> float:
+    """`pinched_stiffness`, evaluated in every step."""
+    return pinched_stiffness(x, eps, k0, rho_p, per_sigma, u, per_eps_p)
+
+
+def pinched_stiffness_kept(
+    kp: float,
+    x: float,
+    eps: float,
+    k0: float,
+    rho_p: float,
+    per_sigma: float,
+    u: float,
+    per_eps_p: float,
+) -> float:
+    """`pinched_stiffness` as it was last evaluated."""
+    return kp
+
+
 def hysteretic_slope(
     z: float,
     direction: float,
@@ -103,8 +153,9 @@ def hysteretic_slope(
     ``direction`` is the sign of x' z: +1 loading, -1 unloading.
     """
     size = abs(z)
-    flow = beta * math.pow(size, n) * (eta0 + direction)
-    slope_z = -n * flow / math.copysign(max(size, 1e-300), z)
+    flow_per_z = beta * power(size, n - 1.0) * (eta0 + direction)
+    flow = flow_per_z * size
+    slope_z = -n * math.copysign(1.0, z) * flow_per_z
     # d(ln beta)/dd = d(ln A)/dd + n delta_f
     return a - flow, slope_z, a * log_a - flow * (log_a + n_delta_f)
 
@@ -119,6 +170,7 @@ def advance(
     a: float,
     beta: float,
     log_a: float,
+    kp: float,
     free_step: float,
     flexibility: float,
     k0: float,
@@ -138,7 +190,7 @@ def advance(
     per_mass: float,
     tolerance: float,
     max_iterations: float,
-) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float, float]:
     """One step of the hinge within a structure that is linear but for it, by Newton's method.
 
     Condensed on the hinge, the structure answers ``dx = free_step - flexibility * M``; with
@@ -151,6 +203,8 @@ def advance(
         Committed state.
     d, a, beta, log_a : float
         Damage for which `degradation` is known, and its results.
+    kp : float
+        The last `pinched_stiffness`.
     z_guess : float
         Where Newton's method starts.
     free_step : float
@@ -173,10 +227,10 @@ def advance(
         Consistent dM/dx, N m/rad.
     correction : float
         Last correction of z; above ``tolerance`` the iteration has not converged.
-    d, a, beta, log_a : float
-        What is known of the degradation now.
+    d, a, beta, log_a, kp : float
+        What is known of degradation and pinching now.
     """
-    kp = pinched_stiffness(x, eps, k0, rho_p, per_sigma, u, per_eps_p)
+    kp = pinched_stiffness_now(kp, x, eps, k0, rho_p, per_sigma, u, per_eps_p)
     backbone = alpha * kp
     hysteretic = (1.0 - alpha) * kp
     energy = hysteretic * per_mass  # eps grows by this times z dx
@@ -226,6 +280,7 @@ def advance(
         a,
         beta,
         log_a,
+        kp,
     )
 
 
@@ -239,6 +294,7 @@ def advance_linearised(
     a: float,
     beta: float,
     log_a: float,
+    kp: float,
     free_step: float,
     flexibility: float,
     k0: float,
@@ -258,14 +314,14 @@ def advance_linearised(
     per_mass: float,
     tolerance: float,
     max_iterations: float,
-) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float, float]:
     """`advance` with a single, consistently linearised solve and no iteration."""
-    step, z_new, eps_new, reach, moment, tangent, _, d, a, beta, log_a = advance(
-        x, z, z_guess, eps, x_max, d, a, beta, log_a, free_step, flexibility,
+    step, z_new, eps_new, reach, moment, tangent, _, d, a, beta, log_a, kp = advance(
+        x, z, z_guess, eps, x_max, d, a, beta, log_a, kp, free_step, flexibility,
         k0, alpha, n, eta0, beta0, rho_eps_m, rho_x, phi, delta_k, delta_f,
         per_sigma, u, per_eps_p, rho_p, per_mass, 0.0, 1.0,
     )  # fmt: skip
-    return step, z_new, eps_new, reach, moment, tangent, 0.0, d, a, beta, log_a
+    return step, z_new, eps_new, reach, moment, tangent, 0.0, d, a, beta, log_a, kp
 
 
 def advance_elastic(
@@ -278,6 +334,7 @@ def advance_elastic(
     a: float,
     beta: float,
     log_a: float,
+    kp: float,
     free_step: float,
     flexibility: float,
     k0: float,
@@ -297,8 +354,8 @@ def advance_elastic(
     per_mass: float,
     tolerance: float,
     max_iterations: float,
-) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float, float]:
     """Elastic hinge, M = k0 x, with the arguments and results of `advance`."""
     step = (free_step - flexibility * k0 * x) / (1.0 + flexibility * k0)
     reach = max(x_max, abs(x + step))
-    return step, z, eps, reach, k0 * (x + step), k0, 0.0, d, a, beta, log_a
+    return step, z, eps, reach, k0 * (x + step), k0, 0.0, d, a, beta, log_a, kp

@@ -1,7 +1,7 @@
 """Rows of the constants ``Q[row, lane]``: everything of a run that stays fixed.
 
 The vehicle's rows stand last: the bodies' masses; then, in the order of `vehicle.kernel_order`,
-inverse masses, 1 for each y, 1 for each z (else 0), and the rows of K_v and of C_v.
+inverse masses and the upper triangles of K_v and of C_v (see `vehicle.packed`).
 """
 
 from typing import Final

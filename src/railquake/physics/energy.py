@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from railquake.physics import constant, state
+from railquake.physics.vehicle import packed
 
 __all__ = ["EnergyAudit", "audit"]
 
@@ -108,8 +109,8 @@ def audit(start: Array, end: Array, constants: Array) -> EnergyAudit:
     )
     block = constant.VEHICLE + dofs // 3
     inverse_mass = q[block : block + dofs]
-    block += 3 * dofs
-    suspension = q[block : block + dofs * dofs].reshape(dofs, dofs)
+    entries = np.array([[packed(i, j, dofs) for j in range(dofs)] for i in range(dofs)])
+    suspension = q[block + dofs + entries]
 
     def stored(s: Array) -> tuple[float, float]:
         x, v = s[state.U : state.U + 3], s[state.U_V : state.U_V + 3]

@@ -191,8 +191,41 @@ def _finish(function: Law, target: Target) -> Law:
         return function
     import numba
 
-    law: Law = numba.njit(forceinline=True, error_model="numpy", fastmath=set(FASTMATH))(function)
+    if function.__name__ in ("bits_of", "float_of"):
+        return _bit_casts()[function.__name__]
+
+    # without counting references to arrays ("_nrt"): a law neither makes nor keeps any
+    options: dict[str, Any] = {"error_model": "numpy", "fastmath": set(FASTMATH), "_nrt": False}
+    if "lanes" in function.__code__.co_varnames[: function.__code__.co_argcount]:
+        # loops over lanes must be seen together with the arrays' making, or they are compiled for
+        # any row stride: half as fast
+        options["inline"] = "always"
+    else:
+        options["forceinline"] = True
+    law: Law = numba.njit(**options)(function)
     return law
+
+
+@cache
+def _bit_casts() -> dict[str, Law]:
+    """Compiled counterparts of `elementary.bits_of` and `elementary.float_of`."""
+    from numba.core import types
+    from numba.extending import intrinsic
+
+    def cast(kind: Any, result: Any) -> Law:
+        def typed(typing_context: Any, value: Any) -> Any:
+            def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+                return builder.bitcast(arguments[0], context.get_value_type(result))
+
+            return result(kind), generate
+
+        law: Law = intrinsic(typed)
+        return law
+
+    return {
+        "bits_of": cast(types.float64, types.int64),
+        "float_of": cast(types.int64, types.float64),
+    }
 
 
 def _keep_on_disk(dispatcher: Any, folder: Path) -> None:

@@ -20,7 +20,8 @@ from railquake.physics.profiles import (
     POSITIVE,
     Geometry,
     axis_cell,
-    hermite,
+    cubic,
+    hermite_coefficients,
     zone_contact,
 )
 from railquake.physics.vehicle import (
@@ -30,6 +31,7 @@ from railquake.physics.vehicle import (
     accelerate_vertical,
     carry,
     damp,
+    packed,
     predict,
     push_wheelset,
 )
@@ -38,7 +40,6 @@ __all__ = ["LANES", "march", "step"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-FAR = 0.5e-3  # m; see `look_up`
 LANES = 1  # scenarios abreast; bound when a kernel is made
 
 
@@ -62,9 +63,13 @@ def step(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
     for lane in range(lanes):
         fetch(S, Q, geometry, lane)
     for lane in range(lanes):
-        interpolate(S, lane)
+        press(S, Q, geometry, 0, 0, lane)
     for lane in range(lanes):
-        press(S, Q, lane)
+        press(S, Q, geometry, 0, 1, lane)
+    for lane in range(lanes):
+        press(S, Q, geometry, 1, 0, lane)
+    for lane in range(lanes):
+        press(S, Q, geometry, 1, 1, lane)
     for lane in range(lanes):
         react(S, Q, lane)
     for i in range(BLOCK):
@@ -86,8 +91,9 @@ def find_contact_forces(S: Array, Q: Array, geometry: Geometry) -> None:
     place_wheelset(S, Q, 0)
     locate(S, Q, geometry.shift_nodes, 0)
     fetch(S, Q, geometry, 0)
-    interpolate(S, 0)
-    press(S, Q, 0)
+    for side in range(2):
+        for zone in range(2):
+            press(S, Q, geometry, side, zone, 0)
     react(S, Q, 0)
 
 
@@ -125,6 +131,18 @@ def place_wheelset(S: Array, Q: Array, lane: int) -> None:
     S[state.HEIGHT_V, lane] = cosine * vz - sine * vy - turning * shift
     S[state.ROLL_V, lane] = S[y + DOF_COUNT + 1, lane] - turning
     S[state.ROLL_SIN, lane], S[state.ROLL_COS, lane] = sin_cos(roll)
+    # what the patches will add up
+    S[state.FORCE_Y, lane] = 0.0
+    S[state.FORCE_Z, lane] = 0.0
+    S[state.FORCE_PSI, lane] = 0.0
+    S[state.HERTZ_ENERGY, lane] = 0.0
+    S[state.IMPACT_POWER, lane] = 0.0
+    S[state.CREEP_POWER, lane] = 0.0
+    S[state.SPIN_POWER, lane] = 0.0
+    S[state.LOAD_LEFT, lane] = 0.0
+    S[state.LOAD_RIGHT, lane] = 0.0
+    S[state.LATERAL_LEFT, lane] = 0.0
+    S[state.LATERAL_RIGHT, lane] = 0.0
 
 
 def locate(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
@@ -169,172 +187,123 @@ def locate(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
 
 
 def fetch(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
-    """Stage: loads only, the table's values at the four corners of each cell."""
-    table = geometry.table
-    next_roll = (geometry.shift_nodes * 2 * FIELDS) & POSITIVE
-    for side in range(2):
-        base = int(S[state.CELL + side * state.CELL_ROWS + state.CELL_BASE, lane]) & POSITIVE
-        for zone in range(2):
-            row = state.CORNERS + (2 * side + zone) * state.CORNER_ROWS
-            place = base + zone * FIELDS
-            for k in range(FIELDS):
-                S[row + k, lane] = table[place + k]
-                S[row + FIELDS + k, lane] = table[place + 2 * FIELDS + k]
-                S[row + 2 * FIELDS + k, lane] = table[place + next_roll + k]
-                S[row + 3 * FIELDS + k, lane] = table[place + next_roll + 2 * FIELDS + k]
+    """Stage: the polynomials of each side's cell, when a wheel has come to another cell.
 
-
-def blend(w: float, w_roll: float, f00: float, f10: float, f01: float, f11: float) -> float:
-    """Bilinear interpolation between the corners (shift, roll) of a cell."""
-    low = f00 + w * (f10 - f00)
-    high = f01 + w * (f11 - f01)
-    return low + w_roll * (high - low)
-
-
-def blend_gap(
-    w: float,
-    w_roll: float,
-    rate: float,
-    roll_rate: float,
-    g00: float,
-    g10: float,
-    g01: float,
-    g11: float,
-    y00: float,
-    y10: float,
-    y01: float,
-    y11: float,
-    p00: float,
-    p10: float,
-    p01: float,
-    p11: float,
-) -> tuple[float, float, float]:
-    """Gap G within a cell and its derivatives by shift and roll.
-
-    ``rate`` and ``roll_rate`` are cells per metre and per radian.  Cubic (Hermite) in the shift
-    from the corners' G and dG/dY, then in the roll from these and dG/dpsi.  The derivatives are
-    those of this very interpolation, so that the normal force remains the gradient of the gap.
+    A wheel stays in its cell for many steps.
     """
-    width = 1.0 / rate
-    roll_width = 1.0 / roll_rate
-    low, low_slope = hermite(w, g00, g10, width * y00, width * y10)
-    high, high_slope = hermite(w, g01, g11, width * y01, width * y11)
-    low_rise = roll_width * (p10 - p00)
-    high_rise = roll_width * (p11 - p01)
-    gap, gap_psi = hermite(
-        w_roll, low, high, roll_width * p00 + w * low_rise, roll_width * p01 + w * high_rise
-    )
-    slope, _ = hermite(w_roll, low_slope, high_slope, low_rise, high_rise)
-    return gap, slope * rate, gap_psi * roll_rate
+    fetch_side(S, geometry, 0, lane)
+    fetch_side(S, geometry, 1, lane)
 
 
-def interpolate(S: Array, lane: int) -> None:
-    """Stage: gap and contact data of each patch from its cell's corners."""
-    for side in range(2):
-        cell = state.CELL + side * state.CELL_ROWS
-        w = S[cell + state.CELL_SHIFT, lane]
-        w_roll = S[cell + state.CELL_ROLL, lane]
+def fetch_side(S: Array, geometry: Geometry, side: int, lane: int) -> None:
+    """`fetch` for one side."""
+    cell = state.CELL + side * state.CELL_ROWS
+    base = S[cell + state.CELL_BASE, lane]
+    if base != S[cell + state.CELL_HELD, lane]:
+        S[cell + state.CELL_HELD, lane] = base
+        width = 1.0 / S[cell + state.CELL_SHIFT_RATE, lane]
+        roll_width = 1.0 / S[cell + state.CELL_ROLL_RATE, lane]
+        table = geometry.table
+        next_roll = (geometry.shift_nodes * 2 * FIELDS) & POSITIVE
         for zone in range(2):
             # corners: (shift, roll) = (low, low), (high, low), (low, high), (high, high)
-            c00 = state.CORNERS + (2 * side + zone) * state.CORNER_ROWS
-            c10 = c00 + FIELDS
-            c01 = c10 + FIELDS
-            c11 = c01 + FIELDS
-            patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
-            gap, slope, gap_psi = blend_gap(
-                w, w_roll,
-                S[cell + state.CELL_SHIFT_RATE, lane], S[cell + state.CELL_ROLL_RATE, lane],
-                S[c00, lane], S[c10, lane], S[c01, lane], S[c11, lane],
-                S[c00 + 1, lane], S[c10 + 1, lane], S[c01 + 1, lane], S[c11 + 1, lane],
-                S[c00 + 2, lane], S[c10 + 2, lane], S[c01 + 2, lane], S[c11 + 2, lane],
-            )  # fmt: skip
-            S[patch + state.PATCH_GAP, lane] = gap
-            S[patch + state.PATCH_SLOPE, lane] = slope
-            S[patch + state.PATCH_GAP_PSI, lane] = gap_psi
-            for k in range(4):
-                S[patch + state.PATCH_RAIL_Z + k, lane] = blend(
-                    w,
-                    w_roll,
-                    S[c00 + 3 + k, lane],
-                    S[c10 + 3 + k, lane],
-                    S[c01 + 3 + k, lane],
-                    S[c11 + 3 + k, lane],
-                )
-
-
-def look_up(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
-    """`fetch` and `interpolate` in one, for one scenario: only what a patch needs.
-
-    A patch that is open by more than `FAR` needs no more than to be seen so: linear interpolation
-    errs by less than that.
-    """
-    table = geometry.table
-    height = S[state.HEIGHT, lane]
-    next_roll = (geometry.shift_nodes * 2 * FIELDS) & POSITIVE
-    for side in range(2):
-        cell = state.CELL + side * state.CELL_ROWS
-        base = int(S[cell + state.CELL_BASE, lane]) & POSITIVE
-        w = S[cell + state.CELL_SHIFT, lane]
-        rate = S[cell + state.CELL_SHIFT_RATE, lane]
-        w_roll = S[cell + state.CELL_ROLL, lane]
-        roll_rate = S[cell + state.CELL_ROLL_RATE, lane]
-        for zone in range(2):
-            patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
-            c00 = base + zone * FIELDS
+            c00 = (int(base) & POSITIVE) + zone * FIELDS
             c10 = c00 + 2 * FIELDS
             c01 = c00 + next_roll
-            c11 = c10 + next_roll
-            near = blend(w, w_roll, table[c00], table[c10], table[c01], table[c11])
-            S[patch + state.PATCH_GAP, lane] = near
-            if near < height + FAR:
-                gap, slope, gap_psi = blend_gap(
-                    w, w_roll, rate, roll_rate,
-                    table[c00], table[c10], table[c01], table[c11],
-                    table[c00 + 1], table[c10 + 1], table[c01 + 1], table[c11 + 1],
-                    table[c00 + 2], table[c10 + 2], table[c01 + 2], table[c11 + 2],
-                )  # fmt: skip
-                S[patch + state.PATCH_GAP, lane] = gap
-                S[patch + state.PATCH_SLOPE, lane] = slope
-                S[patch + state.PATCH_GAP_PSI, lane] = gap_psi
-                for k in range(4):
-                    S[patch + state.PATCH_RAIL_Z + k, lane] = blend(
-                        w,
-                        w_roll,
-                        table[c00 + 3 + k],
-                        table[c10 + 3 + k],
-                        table[c01 + 3 + k],
-                        table[c11 + 3 + k],
-                    )
-
-
-def search_grid(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
-    """Stage in the place of `fetch`: gap and contact data of each patch by the grid method."""
-    for side in range(2):
-        sign = 2.0 * side - 1.0
-        shift = sign * S[state.SHIFT, lane]
-        psi = sign * S[state.ROLL, lane]
-        for zone in range(2):
-            first = geometry.flange_points if zone == 0 else 0
-            last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
-            gap, slope, gap_psi, rail_z, stiffness, f22, f23 = zone_contact(
-                shift, psi, first, last, geometry
+            c11 = c01 + 2 * FIELDS
+            row = state.POLYNOMIAL + (2 * side + zone) * state.POLYNOMIAL_ROWS
+            low = hermite_coefficients(
+                table[c00], table[c10], width * table[c00 + 1], width * table[c10 + 1]
             )
-            patch = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
-            S[patch + state.PATCH_GAP, lane] = gap
-            S[patch + state.PATCH_SLOPE, lane] = slope
-            S[patch + state.PATCH_GAP_PSI, lane] = gap_psi
-            S[patch + state.PATCH_RAIL_Z, lane] = rail_z
-            S[patch + state.PATCH_STIFFNESS, lane] = stiffness
-            S[patch + state.PATCH_CREEP, lane] = f22
-            S[patch + state.PATCH_SPIN, lane] = f23
+            high = hermite_coefficients(
+                table[c01], table[c11], width * table[c01 + 1], width * table[c11 + 1]
+            )
+            low_rise = (
+                roll_width * table[c00 + 2], roll_width * (table[c10 + 2] - table[c00 + 2])
+            )  # fmt: skip
+            high_rise = (
+                roll_width * table[c01 + 2], roll_width * (table[c11 + 2] - table[c01 + 2])
+            )  # fmt: skip
+            S[row, lane], S[row + 1, lane], S[row + 2, lane], S[row + 3, lane] = low
+            S[row + 4, lane], S[row + 5, lane] = low_rise
+            for k in range(4):
+                rise = high[k] - low[k]
+                d0 = low_rise[k] if k < 2 else 0.0
+                d1 = high_rise[k] if k < 2 else 0.0
+                S[row + 6 + k, lane] = 3.0 * rise - 2.0 * d0 - d1
+                S[row + 10 + k, lane] = d0 + d1 - 2.0 * rise
+            for k in range(4):
+                f00 = table[c00 + 3 + k]
+                f10 = table[c10 + 3 + k]
+                f01 = table[c01 + 3 + k]
+                f11 = table[c11 + 3 + k]
+                S[row + 14 + 4 * k, lane] = f00
+                S[row + 15 + 4 * k, lane] = f10 - f00
+                S[row + 16 + 4 * k, lane] = f01 - f00
+                S[row + 17 + 4 * k, lane] = f11 - f10 - f01 + f00
+
+
+def gap_in_cell(
+    S: Array, row: int, w: float, w_roll: float, lane: int
+) -> tuple[float, float, float]:
+    """Gap G within a cell and its derivatives by the places ``w`` (shift) and ``w_roll``.
+
+    Cubic (Hermite) in the shift from the corners' G and dG/dY, then in the roll from these and
+    dG/dpsi, the last linear in the shift.  The derivatives are those of this very interpolation,
+    so that the normal force remains the gradient of the gap.
+    """
+    q0, r0 = cubic(w, S[row, lane], S[row + 1, lane], S[row + 2, lane], S[row + 3, lane])
+    r1 = S[row + 5, lane]
+    q1 = S[row + 4, lane] + w * r1
+    q2, r2 = cubic(w, S[row + 6, lane], S[row + 7, lane], S[row + 8, lane], S[row + 9, lane])
+    q3, r3 = cubic(w, S[row + 10, lane], S[row + 11, lane], S[row + 12, lane], S[row + 13, lane])
+    gap, gap_roll = cubic(w_roll, q0, q1, q2, q3)
+    return gap, r0 + w_roll * (r1 + w_roll * (r2 + w_roll * r3)), gap_roll
+
+
+def blend(S: Array, row: int, w: float, w_roll: float, lane: int) -> float:
+    """Bilinear interpolation within a cell."""
+    return S[row, lane] + w * S[row + 1, lane] + w_roll * (S[row + 2, lane] + w * S[row + 3, lane])
+
+
+def patch_at(
+    S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int
+) -> tuple[float, float, float, float, float, float, float]:
+    """What `profiles.zone_contact` gives, from the polynomials of the wheel's cell."""
+    cell = state.CELL + side * state.CELL_ROWS
+    w = S[cell + state.CELL_SHIFT, lane]
+    w_roll = S[cell + state.CELL_ROLL, lane]
+    row = state.POLYNOMIAL + (2 * side + zone) * state.POLYNOMIAL_ROWS
+    gap, slope, gap_psi = gap_in_cell(S, row, w, w_roll, lane)
+    return (
+        gap,
+        slope * S[cell + state.CELL_SHIFT_RATE, lane],
+        gap_psi * S[cell + state.CELL_ROLL_RATE, lane],
+        blend(S, row + 14, w, w_roll, lane),
+        blend(S, row + 18, w, w_roll, lane),
+        blend(S, row + 22, w, w_roll, lane),
+        blend(S, row + 26, w, w_roll, lane),
+    )
+
+
+def search_grid(
+    S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int
+) -> tuple[float, float, float, float, float, float, float]:
+    """In the place of `patch_at`: the grid method itself."""
+    sign = 2.0 * side - 1.0
+    first = geometry.flange_points if zone == 0 else 0
+    last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
+    return zone_contact(
+        sign * S[state.SHIFT, lane], sign * S[state.ROLL, lane], first, last, geometry
+    )
 
 
 def skip_locate(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
     """Stage in the place of `locate` where no table is used."""
 
 
-def skip_interpolate(S: Array, lane: int) -> None:
-    """Stage in the place of `interpolate` where no table is used."""
+def skip_fetch(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
+    """Stage in the place of `fetch` where no table is used."""
 
 
 def patch_forces(
@@ -414,91 +383,74 @@ def patch_forces(
     )
 
 
-def closed_patch_forces(
-    penetration: float,
+def press(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int) -> None:
+    """Stage: contact forces of a patch, added up for all wheels of the section."""
+    gap, slope, gap_psi, rail_z, stiffness, creep, spin = patch_at(S, Q, geometry, side, zone, lane)
+    bear(S, Q, side, zone, gap, slope, gap_psi, rail_z, stiffness, creep, spin, lane)
+
+
+def press_closed(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int) -> None:
+    """`press` for one scenario: an open patch costs nothing."""
+    gap, slope, gap_psi, rail_z, stiffness, creep, spin = patch_at(S, Q, geometry, side, zone, lane)
+    if S[state.HEIGHT, lane] > gap:
+        bear(S, Q, side, zone, gap, slope, gap_psi, rail_z, stiffness, creep, spin, lane)
+    else:
+        row = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
+        S[row + state.PATCH_PENETRATION, lane] = S[state.HEIGHT, lane] - gap
+        S[row + state.PATCH_HYSTERESIS, lane] = 0.0
+
+
+def bear(
+    S: Array,
+    Q: Array,
+    side: int,
+    zone: int,
+    gap: float,
     slope: float,
     gap_psi: float,
-    arm_z: float,
+    rail_z: float,
     stiffness: float,
     creep: float,
     spin: float,
-    shift_v: float,
-    height_v: float,
-    roll_v: float,
-    roll_sin: float,
-    roll_cos: float,
-    hysteresis: float,
-    alpha_r: float,
-    onset_bound: float,
-    friction: float,
-    inverse_speed: float,
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """`patch_forces` for one scenario: an open patch costs nothing."""
-    if penetration > 0.0:
-        return patch_forces(
-            penetration, slope, gap_psi, arm_z, stiffness, creep, spin, shift_v, height_v, roll_v,
-            roll_sin, roll_cos, hysteresis, alpha_r, onset_bound, friction, inverse_speed,
-        )  # fmt: skip
-    return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-
-
-def press(S: Array, Q: Array, lane: int) -> None:
-    """Stage: contact forces of all patches, summed for the section's wheels."""
-    total_y = 0.0
-    total_z = 0.0
-    total_psi = 0.0
-    energy = 0.0
-    impact = 0.0
-    creepage = 0.0
-    spin_input = 0.0
-    count = Q[constant.AXLES, lane] * S[state.ON_TRACK, lane]
+    lane: int,
+) -> None:
+    """Forces of a patch whose gap and contact data are known."""
+    sign = 2.0 * side - 1.0
+    row = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
     height = S[state.HEIGHT, lane]
-    for side in range(2):
-        sign = 2.0 * side - 1.0
-        side_y = 0.0
-        side_z = 0.0
-        for zone in range(2):
-            row = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
-            penetration = height - S[row + state.PATCH_GAP, lane]
-            hysteresis, q_y, q_z, q_psi, stored, lost, crept, spun = patch_forces(
-                penetration,
-                S[row + state.PATCH_SLOPE, lane],
-                S[row + state.PATCH_GAP_PSI, lane],
-                S[row + state.PATCH_RAIL_Z, lane] - height,
-                S[row + state.PATCH_STIFFNESS, lane],
-                S[row + state.PATCH_CREEP, lane],
-                S[row + state.PATCH_SPIN, lane],
-                sign * S[state.SHIFT_V, lane],
-                S[state.HEIGHT_V, lane],
-                sign * S[state.ROLL_V, lane],
-                sign * S[state.ROLL_SIN, lane],
-                S[state.ROLL_COS, lane],
-                S[row + state.PATCH_HYSTERESIS, lane],
-                Q[constant.ALPHA_R, lane],
-                Q[constant.ONSET_BOUND, lane],
-                Q[constant.FRICTION, lane],
-                Q[constant.INVERSE_SPEED, lane],
-            )
-            S[row + state.PATCH_PENETRATION, lane] = penetration
-            S[row + state.PATCH_HYSTERESIS, lane] = hysteresis
-            side_y += sign * q_y
-            side_z += q_z
-            total_psi += sign * q_psi
-            energy += stored
-            impact += lost
-            creepage += crept
-            spin_input += spun
-        total_y += side_y
-        total_z += side_z
-        S[state.LOAD_LEFT + side, lane] = -count * side_z
-        S[state.LATERAL_LEFT + side, lane] = -count * side_y
-    S[state.FORCE_Y, lane] = count * total_y
-    S[state.FORCE_Z, lane] = count * total_z
-    S[state.FORCE_PSI, lane] = count * total_psi
-    S[state.HERTZ_ENERGY, lane] = count * energy
-    S[state.IMPACT_POWER, lane] = count * impact
-    S[state.CREEP_POWER, lane] = count * creepage
-    S[state.SPIN_POWER, lane] = count * spin_input
+    hysteresis, q_y, q_z, q_psi, stored, lost, crept, spun = patch_forces(
+        height - gap,
+        slope,
+        gap_psi,
+        rail_z - height,
+        stiffness,
+        creep,
+        spin,
+        sign * S[state.SHIFT_V, lane],
+        S[state.HEIGHT_V, lane],
+        sign * S[state.ROLL_V, lane],
+        sign * S[state.ROLL_SIN, lane],
+        S[state.ROLL_COS, lane],
+        S[row + state.PATCH_HYSTERESIS, lane],
+        Q[constant.ALPHA_R, lane],
+        Q[constant.ONSET_BOUND, lane],
+        Q[constant.FRICTION, lane],
+        Q[constant.INVERSE_SPEED, lane],
+    )
+    S[row + state.PATCH_PENETRATION, lane] = height - gap
+    S[row + state.PATCH_HYSTERESIS, lane] = hysteresis
+    count = Q[constant.AXLES, lane] * S[state.ON_TRACK, lane]
+    across = count * sign * q_y
+    down = count * q_z
+    S[state.FORCE_Y, lane] += across
+    S[state.FORCE_Z, lane] += down
+    S[state.FORCE_PSI, lane] += count * sign * q_psi
+    S[state.HERTZ_ENERGY, lane] += count * stored
+    S[state.IMPACT_POWER, lane] += count * lost
+    S[state.CREEP_POWER, lane] += count * crept
+    S[state.SPIN_POWER, lane] += count * spun
+    S[state.LOAD_LEFT + side, lane] -= down
+    S[state.LATERAL_LEFT + side, lane] -= across
 
 
 def react(S: Array, Q: Array, lane: int) -> None:
@@ -701,7 +653,7 @@ def vehicle_energy(S: Array, Q: Array, lane: int) -> float:
         force = 0.0
         for j in range(DOF_COUNT):
             force += (
-                Q[constant.VEHICLE + bodies + 3 * DOF_COUNT + i * DOF_COUNT + j, lane]
+                Q[constant.VEHICLE + bodies + DOF_COUNT + packed(i, j, DOF_COUNT), lane]
                 * S[state.VEHICLE + j, lane]
             )
         energy += 0.5 * (x * force + v * v / Q[constant.VEHICLE + bodies + i, lane])

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from railquake.physics import constant, state
-from railquake.physics.boucwen import advance
+from railquake.physics.boucwen import advance, damage_index, degradation, pinched_stiffness
 from railquake.physics.newmark import new_acceleration, new_velocity
 
 __all__ = [
@@ -32,6 +32,7 @@ __all__ = [
     "move_track",
     "natural_frequencies",
     "rayleigh_damping",
+    "refresh_hinge",
     "stiffness_matrix",
 ]
 
@@ -134,7 +135,7 @@ def move_structure(S: Array, Q: Array, lane: int) -> None:
         + (c_u2 * vu + c_12 * v1 + c_22 * v2)
     )
     z = S[state.Z, lane]
-    d_1, z_new, eps, x_max, moment, _, correction, damage, a, beta, log_a = advance(
+    d_1, z_new, eps, x_max, moment, _, correction, damage, a, beta, log_a, kp = advance(
         th1,
         z,
         z + S[state.Z_STEP, lane],
@@ -144,6 +145,7 @@ def move_structure(S: Array, Q: Array, lane: int) -> None:
         S[state.DEGRADED_A, lane],
         S[state.DEGRADED_BETA, lane],
         S[state.DEGRADED_LOG, lane],
+        S[state.PINCHED, lane],
         f_u1 * b_u + f_11 * b_1 + f_12 * b_2,
         f_11,
         Q[constant.K0, lane],
@@ -196,8 +198,42 @@ def move_structure(S: Array, Q: Array, lane: int) -> None:
     S[state.DEGRADED_A, lane] = a
     S[state.DEGRADED_BETA, lane] = beta
     S[state.DEGRADED_LOG, lane] = log_a
+    S[state.PINCHED, lane] = kp
     missed = 1.0 if abs(correction) > Q[constant.TOLERANCE, lane] else 0.0
     S[state.UNCONVERGED, lane] += missed
+
+
+def refresh_hinge(S: Array, Q: Array, lane: int) -> None:
+    """Stage, now and then where many run abreast: degradation and pinching of the hinge as it is.
+
+    In between they are extrapolated and kept (`boucwen.degradation_extrapolated`,
+    `boucwen.pinched_stiffness_kept`).
+    """
+    eps = S[state.EPS, lane]
+    damage = damage_index(
+        eps, S[state.X_MAX, lane], Q[constant.RHO_EPS_M, lane], Q[constant.RHO_X, lane]
+    )
+    a, beta, log_a = degradation(
+        damage,
+        Q[constant.PHI, lane],
+        Q[constant.DELTA_K, lane],
+        Q[constant.DELTA_F, lane],
+        Q[constant.N, lane],
+        Q[constant.BETA0, lane],
+    )
+    S[state.DAMAGE, lane] = damage
+    S[state.DEGRADED_A, lane] = a
+    S[state.DEGRADED_BETA, lane] = beta
+    S[state.DEGRADED_LOG, lane] = log_a
+    S[state.PINCHED, lane] = pinched_stiffness(
+        S[state.THETA1, lane],
+        eps,
+        Q[constant.K0, lane],
+        Q[constant.RHO_P, lane],
+        Q[constant.PER_SIGMA, lane],
+        Q[constant.PINCH_U, lane],
+        Q[constant.PER_EPS_P, lane],
+    )
 
 
 def move_track(S: Array, Q: Array, lane: int) -> None:

@@ -138,12 +138,23 @@ def axis_cell(
     return first + cell, place - cell, rate
 
 
+def hermite_coefficients(
+    f0: float, f1: float, d0: float, d1: float
+) -> tuple[float, float, float, float]:
+    """Coefficients of the cubic on 0 <= t <= 1 with ends f0, f1 and slopes d0, d1 per unit t."""
+    rise = f1 - f0
+    return f0, d0, 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise
+
+
 def hermite(t: float, f0: float, f1: float, d0: float, d1: float) -> tuple[float, float]:
     """Cubic Hermite polynomial on 0 <= t <= 1 and its derivative (d0, d1 per unit of t)."""
-    rise = f1 - f0
-    c2 = 3.0 * rise - 2.0 * d0 - d1
-    c3 = d0 + d1 - 2.0 * rise
-    return f0 + t * (d0 + t * (c2 + t * c3)), d0 + t * (2.0 * c2 + 3.0 * t * c3)
+    c0, c1, c2, c3 = hermite_coefficients(f0, f1, d0, d1)
+    return cubic(t, c0, c1, c2, c3)
+
+
+def cubic(t: float, c0: float, c1: float, c2: float, c3: float) -> tuple[float, float]:
+    """Cubic polynomial and its derivative."""
+    return c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3)
 
 
 def rail_at(

@@ -1,8 +1,8 @@
 """Rows of the state ``S[row, lane]``: everything of a run that changes with time.
 
-The vehicle's rows stand last, because their number follows from its bodies: six blocks of
-``DOF_COUNT`` rows hold displacement, velocity, acceleration, the last acceleration, the last
-increment of displacement and the dashpots' force, in the order of `vehicle.kernel_order`.
+The vehicle's rows stand last, because their number follows from its bodies: five blocks of
+``DOF_COUNT`` rows hold displacement, velocity, acceleration, the last acceleration and the last
+increment of displacement, in the order of `vehicle.kernel_order`.
 """
 
 # ruff: noqa: E501
@@ -14,43 +14,39 @@ increment of displacement and the dashpots' force, in the order of `vehicle.kern
 (U, THETA1, THETA2, U_V, THETA1_V, THETA2_V, U_A, THETA1_A, THETA2_A) = range(4, 13)
 
 # --- hinge (Eqs. 11, 12): hysteretic rotation, its last increment, energy, largest rotation,
-# moment; damage and the degradation that is known for it
-(Z, Z_STEP, EPS, X_MAX, MOMENT, DAMAGE, DEGRADED_A, DEGRADED_BETA, DEGRADED_LOG) = range(13, 22)
+# moment; damage and the degradation that is known for it; stiffness after pinching
+(Z, Z_STEP, EPS, X_MAX, MOMENT) = range(13, 18)
+(DAMAGE, DEGRADED_A, DEGRADED_BETA, DEGRADED_LOG, PINCHED) = range(18, 23)
 
 # --- track's origin: position, velocity, last increment of position; sine and cosine of its roll
-(TRACK_Y, TRACK_Z, TRACK_PHI, TRACK_VY, TRACK_VZ, TRACK_VPHI) = range(22, 28)
-(TRACK_STEP_Y, TRACK_STEP_Z, TRACK_STEP_PHI, TRACK_SIN, TRACK_COS) = range(28, 33)
+(TRACK_Y, TRACK_Z, TRACK_PHI, TRACK_VY, TRACK_VZ, TRACK_VPHI) = range(23, 29)
+(TRACK_STEP_Y, TRACK_STEP_Z, TRACK_STEP_PHI, TRACK_SIN, TRACK_COS) = range(29, 34)
 
 # --- wheelset from the track's origin in ground axes; in track axes: Y, Z (negative: above the
 # rails), psi; rates; sine and cosine of psi
-(ARM_Y, ARM_Z) = range(33, 35)
-(SHIFT, HEIGHT, ROLL, SHIFT_V, HEIGHT_V, ROLL_V, ROLL_SIN, ROLL_COS) = range(35, 43)
+(ARM_Y, ARM_Z) = range(34, 36)
+(SHIFT, HEIGHT, ROLL, SHIFT_V, HEIGHT_V, ROLL_V, ROLL_SIN, ROLL_COS) = range(36, 44)
 
 # --- table cell of each side (left, right): first number in the table, place within the cell;
-# for both sides: cells per metre and per radian
-CELL = 43
-CELL_ROWS = 5
-(CELL_BASE, CELL_SHIFT, CELL_SHIFT_RATE, CELL_ROLL, CELL_ROLL_RATE) = range(CELL_ROWS)
+# for both sides: cells per metre and per radian; the cell whose values are at hand
+CELL = 44
+CELL_ROWS = 6
+(CELL_BASE, CELL_SHIFT, CELL_SHIFT_RATE, CELL_ROLL, CELL_ROLL_RATE, CELL_HELD) = range(CELL_ROWS)
 CELL_END = CELL + 2 * CELL_ROWS
 
-# --- table values at a cell's four corners, for each patch
-CORNERS = CELL_END
-CORNER_ROWS = 28
-CORNERS_END = CORNERS + 4 * CORNER_ROWS
+# --- for each patch the polynomials of its cell: gap, coefficients of w^i for the powers 0 (4), 1
+# (2), 2 (4) and 3 (4) of the place in roll; then bilinear (1, w, w_roll, w w_roll) for height of the
+# contact point in track axes (m), Hertz K (N/m^1.5), f22/delta and f23/(delta^1.5 r)
+POLYNOMIAL = CELL_END
+POLYNOMIAL_ROWS = 30
+POLYNOMIALS_END = POLYNOMIAL + 4 * POLYNOMIAL_ROWS
 
 # --- patches: left tread, left flange, right tread, right flange, in the axes of a right-hand wheel
-PATCH = CORNERS_END
-PATCH_ROWS = 9
+PATCH = POLYNOMIALS_END
+PATCH_ROWS = 2
 (
     PATCH_HYSTERESIS,  # chi/K, frozen at the onset of this contact, s/m; 0 while open
     PATCH_PENETRATION,  # vertical, m; negative: gap
-    PATCH_GAP,  # G, m
-    PATCH_SLOPE,  # dG/dY = tan(gamma)
-    PATCH_GAP_PSI,  # dG/dpsi, m
-    PATCH_RAIL_Z,  # height of the contact point in track axes, m
-    PATCH_STIFFNESS,  # Hertz K, N/m^1.5
-    PATCH_CREEP,  # f22 / delta
-    PATCH_SPIN,  # f23 / (delta^1.5 r)
 ) = range(PATCH_ROWS)
 PATCHES_END = PATCH + 4 * PATCH_ROWS
 
@@ -80,10 +76,11 @@ TRACK_OLD = PATCHES_END + 23
     LOST_CREEP,
     SPIN_INPUT,  # brought in by the train's forward motion
     DASHPOT_POWER,
+    DASHPOT_POWER_OLD,
     VEHICLE_ENERGY,  # kinetic and elastic, kept when the vehicle leaves the model
     HERTZ_LEFT,  # Hertz energy that goes with it
-) = range(PATCHES_END + 28, PATCHES_END + 41)
-AUDIT_END = PATCHES_END + 41
+) = range(PATCHES_END + 28, PATCHES_END + 42)
+AUDIT_END = PATCHES_END + 42
 
 # --- peaks of absolute values, from every step
 (
@@ -134,4 +131,4 @@ TRACK_CUBIC = FIRST_TIME + EVENTS
 (TRACK_PLACE, TRACK_RATE) = range(TRACK_CUBIC + 12, TRACK_CUBIC + 14)
 
 VEHICLE = TRACK_CUBIC + 14
-VEHICLE_BLOCKS = 6
+VEHICLE_BLOCKS = 5

@@ -21,6 +21,7 @@ from railquake.physics.zhai import predict_displacement, predict_velocity
 __all__ = [
     "BLOCK",
     "DOF_COUNT",
+    "PACKED",
     "accelerate_lateral",
     "accelerate_vertical",
     "carry",
@@ -30,6 +31,7 @@ __all__ = [
     "fixed_wheelset_modes",
     "kernel_order",
     "lateral_block",
+    "packed",
     "predict",
     "push_wheelset",
 ]
@@ -39,6 +41,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 # Bound to the vehicle's own numbers when a kernel is made.
 DOF_COUNT = 9
 BLOCK = 6  # rows of the first block, see `kernel_order`
+PACKED = 45  # entries of a symmetric matrix
 
 
 def element_row(
@@ -127,6 +130,12 @@ def lateral_block(stiffness: Array, damping: Array) -> int:
     return first
 
 
+def packed(i: int, j: int, n: int) -> int:
+    """Place of entry (i, j) of a symmetric n x n matrix kept as the rows of its upper triangle."""
+    low = min(i, j)
+    return ((low * (2 * n - low - 1)) >> 1) + max(i, j)
+
+
 def predict(S: Array, Q: Array, i: int, lane: int) -> None:
     """Stage: displacement and velocity of degree of freedom ``i`` at the new time (Zhai)."""
     dt = Q[constant.DT, lane]
@@ -161,6 +170,9 @@ def carry(S: Array, Q: Array, lane: int) -> None:
     mean_z = S[state.GROUND_Z, lane] - 0.5 * S[state.GROUND_Z_SLOPE, lane]
     S[state.WORK_GROUND, lane] -= lateral * mean_y + vertical * mean_z
     S[state.WORK_GRAVITY, lane] += vertical * Q[constant.GRAVITY, lane]
+    # what `accelerate` will add up
+    S[state.DASHPOT_POWER_OLD, lane] = S[state.DASHPOT_POWER, lane]
+    S[state.DASHPOT_POWER, lane] = 0.0
 
 
 def accelerate_lateral(S: Array, Q: Array, i: int, lane: int) -> None:
@@ -176,33 +188,30 @@ def accelerate_vertical(S: Array, Q: Array, i: int, lane: int) -> None:
 def accelerate(S: Array, Q: Array, i: int, first: int, last: int, lane: int) -> None:
     """Row ``i`` of Eq. 1, coupled to ``first <= j < last``, solved for the acceleration."""
     bodies = DOF_COUNT // 3
-    stiffness = constant.VEHICLE + bodies + 3 * DOF_COUNT + i * DOF_COUNT
-    damping = stiffness + DOF_COUNT * DOF_COUNT
+    matrix = constant.VEHICLE + bodies + DOF_COUNT
     elastic = 0.0
     viscous = 0.0
     for j in range(first, last):
-        elastic += Q[stiffness + j, lane] * S[state.VEHICLE + j, lane]
-        viscous += Q[damping + j, lane] * S[state.VEHICLE + DOF_COUNT + j, lane]
-    inverse_mass = Q[constant.VEHICLE + bodies + i, lane]
-    shaken = Q[constant.VEHICLE + bodies + DOF_COUNT + i, lane]  # 1 for y
-    heavy = Q[constant.VEHICLE + bodies + 2 * DOF_COUNT + i, lane]  # 1 for z
-    S[state.VEHICLE + 5 * DOF_COUNT + i, lane] = viscous
+        entry = matrix + packed(i, j, DOF_COUNT)
+        elastic += Q[entry, lane] * S[state.VEHICLE + j, lane]
+        viscous += Q[entry + PACKED, lane] * S[state.VEHICLE + DOF_COUNT + j, lane]
+    shaken = 1.0 if i < 2 * bodies and (i & 1) == 0 else 0.0  # y
+    heavy = 1.0 if i >= 2 * bodies else 0.0  # z
+    S[state.DASHPOT_POWER, lane] += viscous * S[state.VEHICLE + DOF_COUNT + i, lane]
     S[state.VEHICLE + 2 * DOF_COUNT + i, lane] = (
         heavy * (Q[constant.GRAVITY, lane] - S[state.GROUND_Z, lane])
         - shaken * S[state.GROUND, lane]
-        - inverse_mass * (elastic + viscous)
+        - Q[constant.VEHICLE + bodies + i, lane] * (elastic + viscous)
     )
 
 
 def damp(S: Array, Q: Array, lane: int) -> None:
     """Stage: energy lost to the dashpots during this step."""
-    power = 0.0
-    for i in range(DOF_COUNT):
-        power += S[state.VEHICLE + DOF_COUNT + i, lane] * S[state.VEHICLE + 5 * DOF_COUNT + i, lane]
     S[state.LOST_DASHPOTS, lane] += (
-        0.5 * Q[constant.DT, lane] * (S[state.DASHPOT_POWER, lane] + power)
+        0.5
+        * Q[constant.DT, lane]
+        * (S[state.DASHPOT_POWER_OLD, lane] + S[state.DASHPOT_POWER, lane])
     )
-    S[state.DASHPOT_POWER, lane] = power
 
 
 def push_wheelset(S: Array, Q: Array, lane: int) -> None:
