@@ -1,9 +1,9 @@
 """The paper's suite: 20 records at four hazard levels, elastic and Bouc-Wen, coupled; 160 runs."""
 
 import pytest
-from suite_files import LEVELS, RECORDS, record_path, scale_factor
 
 import railquake as rq
+from suite_files import LEVELS, RECORDS, record_path, scale_factor
 
 # Bars of the energy audit (at dt = 1e-5 s), relative to what is dissipated, and to what impact and
 # creep lose; of the contact's residual, negative is a gain.

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from suite_files import record_path, scale_factor, strong_part
 
 import railquake as rq
+from suite_files import record_path, scale_factor, strong_part
 
 RECORDS = (
     "RSN006_IMPVALLH2",

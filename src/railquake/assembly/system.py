@@ -31,11 +31,12 @@ from railquake.physics.vehicle import kernel_order, lateral_block
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from railquake.inputs.hinge import BoucWenHinge
     from railquake.inputs.motion import GroundMotion
     from railquake.inputs.scenario import Scenario
     from railquake.inputs.solver import Solver
 
-__all__ = ["GRAVITY", "System", "assemble"]
+__all__ = ["CREEP_LAWS", "GRAVITY", "System", "assemble", "hinge_parameters"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Laws = dict["Callable[..., Any]", "Callable[..., Any]"]
@@ -353,9 +354,17 @@ def _fill_support(
     q[constant.MAP_E] = support.track_offset
     q[constant.MAP_PHI] = 1.0
     q[constant.REACTION] = 1.0 if support.coupled else 0.0
+    parameters = hinge_parameters(hinge, solver.newton_tolerance, solver.newton_max_iterations)
+    q[constant.K0 : constant.K0 + len(parameters)] = parameters
+    law = boucwen.advance_elastic if support.hinge == "elastic" else boucwen.advance
+    return column, law, parameters
+
+
+def hinge_parameters(hinge: BoucWenHinge, tolerance: float, iterations: int) -> tuple[float, ...]:
+    """Parameters of `boucwen.advance` after the flexibility; ``tolerance`` is relative."""
     # z of a fully yielded hinge, without damage: what the tolerance is relative to
     yielded = (1.0 / (hinge.beta0 * (1.0 + abs(hinge.eta0)))) ** (1.0 / hinge.n)
-    parameters = (
+    return (
         hinge.k0,
         hinge.alpha,
         hinge.n,
@@ -371,12 +380,9 @@ def _fill_support(
         1.0 / hinge.eps_p,
         hinge.rho_p,
         1.0 / hinge.m,
-        solver.newton_tolerance * yielded,
-        float(solver.newton_max_iterations),
+        tolerance * yielded,
+        float(iterations),
     )
-    q[constant.K0 : constant.K0 + len(parameters)] = parameters
-    law = boucwen.advance_elastic if support.hinge == "elastic" else boucwen.advance
-    return column, law, parameters
 
 
 def _moment(

@@ -39,6 +39,7 @@ __all__ = [
     "hermite",
     "rail_at",
     "zone_contact",
+    "zone_extremum",
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -170,10 +171,10 @@ def rail_at(
     return z, dz / step
 
 
-def zone_contact(
+def zone_extremum(
     shift: float, psi: float, first: int, last: int, geometry: Geometry
-) -> tuple[float, float, float, float, float, float, float]:
-    """Smallest gap of one zone of the right-hand wheel, and what the forces there need.
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """Smallest gap of one zone of the right-hand wheel, and the geometry of the contact there.
 
     Parameters
     ----------
@@ -191,10 +192,14 @@ def zone_contact(
         Rail slope there, dG/dY.
     gap_psi : float
         dG/dpsi, m.
+    place : float
+        Lateral place of the contact point in track coordinates, outward, m.
     rail_z : float
         Height of the contact point in track axes, m.
-    K, f22/delta, f23/(delta^1.5 r) : float
-        See `contact.hertz_lookup`; r is the local rolling radius.
+    A, B : float
+        Relative curvatures, lateral and along the rolling direction, 1/m.
+    radius : float
+        Local rolling radius, m.
 
     Notes
     -----
@@ -242,6 +247,33 @@ def zone_contact(
     cos_from_axle = max(cos_gamma * (cosine + slope * sine), 0.05)
     lateral = max(0.5 * (geometry.wheel_curvature[near] + rail_curvature), MIN_CURVATURE)
     rolling = 0.5 * cos_from_axle / radius
+    gap_psi = -(y - shift) - slope * (height - gap)
+    return gap, slope, gap_psi, y, height, lateral, rolling, radius
+
+
+def zone_contact(
+    shift: float, psi: float, first: int, last: int, geometry: Geometry
+) -> tuple[float, float, float, float, float, float, float]:
+    """Smallest gap of one zone of the right-hand wheel, and what the forces there need.
+
+    Parameters are those of `zone_extremum`.
+
+    Returns
+    -------
+    G : float
+        Gap with the wheelset's centre at Z = 0, m.
+    tan_gamma : float
+        Rail slope there, dG/dY.
+    gap_psi : float
+        dG/dpsi, m.
+    rail_z : float
+        Height of the contact point in track axes, m.
+    K, f22/delta, f23/(delta^1.5 r) : float
+        See `contact.hertz_lookup`; r is the local rolling radius.
+    """
+    gap, slope, gap_psi, _, height, lateral, rolling, radius = zone_extremum(
+        shift, psi, first, last, geometry
+    )
     stiffness, f22, f23 = hertz_lookup(
         lateral,
         rolling,
@@ -250,7 +282,6 @@ def zone_contact(
         geometry.hertz_creep,
         geometry.hertz_spin,
     )
-    gap_psi = -(y - shift) - slope * (height - gap)
     return gap, slope, gap_psi, height, stiffness, f22, f23 / radius
 
 
