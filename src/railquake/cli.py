@@ -578,5 +578,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _complain(message: str, status: int) -> int:
-    print(f"railquake: {message}", file=sys.stderr)
+    if message:
+        print(f"railquake: {message}", file=sys.stderr)
     return status

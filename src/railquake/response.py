@@ -45,7 +45,12 @@ _CHANNELS = (
     ("track_lateral_m", state.TRACK_Y, "m", "track's origin, right"),
     ("track_vertical_m", state.TRACK_Z, "m", "track's origin, down"),
     ("track_roll_rad", state.TRACK_PHI, "rad", "track's roll, right side down"),
-    ("lateral_shift_m", state.SHIFT, "m", "wheelset relative to the track, right"),
+    (
+        "lateral_shift_m",
+        state.SHIFT,
+        "m",
+        "wheelset relative to the track, right; NaN once it has left the track",
+    ),
     ("wheelset_height_m", state.HEIGHT, "m", "wheelset's centre in track axes, down"),
     ("relative_roll_rad", state.ROLL, "rad", "wheelset relative to the track"),
     ("wheel_load_left_n", state.LOAD_LEFT, "N", "vertical load of the left wheels"),
@@ -180,7 +185,7 @@ class Response:
 
     @property
     def history(self) -> xarray.Dataset:
-        """Histories with names and units."""
+        """Histories with names and units; the train's are NaN once it has left the track."""
         import xarray
 
         variables = {
@@ -211,7 +216,7 @@ class Response:
         roll = np.abs(self.channel("relative_roll_rad"))
         shift = np.abs(self.channel("lateral_shift_m"))
         lifted = self.end[state.FIRST_TIME + state.UPLIFT, 0] >= 0.0
-        return int(np.argmax(roll if lifted else shift))
+        return int(np.nanargmax(roll if lifted else shift))
 
     @property
     def reference_roll(self) -> float:

@@ -75,6 +75,7 @@ def simulate(
             break
     now = time.perf_counter()
     _absolute(frames, rows)
+    _forget_train(frames, rows, end, system)
     return Response(
         system=system,
         end=end,
@@ -92,3 +93,15 @@ def _absolute(frames: np.ndarray, rows: np.ndarray) -> None:
     frames[:, column[state.U_A]] += frames[:, column[state.GROUND]]
     # the contact forces are kept as they act on the wheelset
     frames[:, column[state.FORCE_Y]] *= -1.0
+
+
+def _forget_train(frames: np.ndarray, rows: np.ndarray, end: np.ndarray, system: System) -> None:
+    """NaN for the train's motion once it has left the track."""
+    times = end[state.FIRST_TIME + np.array([state.DERAILED, state.OVERTURNED]), 0]
+    left = times[times >= 0.0]
+    if end[state.ON_TRACK, 0] > 0.0 or left.size == 0:
+        return
+    last = round(float(left.min()) / (system.dt * system.frame_steps))
+    train = (rows >= state.VEHICLE) | np.isin(rows, (state.SHIFT, state.HEIGHT, state.ROLL))
+    penetrations = (rows >= state.PATCH) & (rows < state.PATCHES_END)
+    frames[last + 1 :, train | penetrations] = np.nan

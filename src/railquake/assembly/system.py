@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import butter
 
 from railquake.assembly import statics
 from railquake.assembly.geometry import (
@@ -156,7 +155,9 @@ def assemble(scenario: Scenario) -> System:
     q[constant.FRAME_STEPS] = frame_steps
     _fill_vehicle(q, scenario, matrices)
     _fill_contact(q, scenario)
-    _fill_filter(q, solver.lateral_force_filter, solver.dt * frame_steps)
+    q[constant.FILTER_B0 : constant.FILTER_B0 + 5] = low_pass_coefficients(
+        solver.lateral_force_filter, solver.dt * frame_steps
+    )
     load = 0.5 * float(matrices.mass[1::3].sum()) * GRAVITY
     q[constant.STATIC_WHEEL_LOAD] = load
 
@@ -309,11 +310,28 @@ def _fill_contact(q: Array, scenario: Scenario) -> None:
     q[constant.ROLL_LIMIT] = ROLL_LIMIT
 
 
-def _fill_filter(q: Array, corner: float, frame: float) -> None:
-    """Second-order Butterworth low-pass on the frame means."""
-    nyquist = 0.5 / frame
-    b, a = butter(2, min(corner / nyquist, 0.99))
-    q[constant.FILTER_B0 : constant.FILTER_B0 + 5] = (*b, a[1], a[2])
+def low_pass_coefficients(corner: float, frame: float) -> tuple[float, ...]:
+    """Second-order Butterworth low-pass b0, b1, b2, a1, a2 (bilinear transform, prewarped).
+
+    What ``scipy.signal.butter(2, corner, fs=1/frame)`` gives, without that package's long import.
+
+    Parameters
+    ----------
+    corner : float
+        Hz; held below the Nyquist frequency.
+    frame : float
+        Sampling interval, s.
+    """
+    warped = math.tan(0.5 * math.pi * min(2.0 * corner * frame, 0.99))
+    scale = 1.0 / (1.0 + math.sqrt(2.0) * warped + warped**2)
+    b0 = scale * warped**2
+    return (
+        b0,
+        2.0 * b0,
+        b0,
+        2.0 * scale * (warped**2 - 1.0),
+        scale * (1.0 - math.sqrt(2.0) * warped + warped**2),
+    )
 
 
 def _fill_support(

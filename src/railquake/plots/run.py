@@ -193,7 +193,7 @@ def _relative_roll(response: Response, path: Path) -> Path:
     ax.plot(*thinned(response.time, roll), color=BLUE, linewidth=1.0)
     for sign in (-1.0, 1.0):
         ax.axhline(sign * onset, color=RED, linewidth=1.0, linestyle="--")
-    peak = float(np.abs(roll).max())
+    peak = float(np.nanmax(np.abs(roll)))
     reach = max(1.25 * onset, min(1.15 * peak, 4.0 * onset))
     ax.set_ylim(-reach, reach)
     ax.text(

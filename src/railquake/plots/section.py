@@ -53,18 +53,19 @@ def draw_body(
 def draw_section(response: Response, path: Path) -> Path:
     """Write the section at `Response.worst_frame`: car, left and right wheel on their rails."""
     frame = response.worst_frame
-    made, axes = figure(10.0, 4.4, 1, 3, width_ratios=[1.0, 1.25, 1.25])
+    made, axes = figure(10.0, 3.6, 1, 3, width_ratios=[1.0, 1.25, 1.25])
     _draw_car(axes[0], response, frame)
     for ax, side in ((axes[1], "left"), (axes[2], "right")):
         _draw_contact(ax, response, frame, side)
     time = float(response.time[frame])
     roll = float(np.degrees(response.channel("relative_roll_rad")[frame]))
     shift = 1e3 * float(response.channel("lateral_shift_m")[frame])
+    side = "right" if shift > 0.0 else "left"
     made.suptitle(
         plain(
-            f"{response.system.ground.name}: t = {time:.3f} s, the worst moment; wheelset on the "
-            f"track {shift:+.1f} mm to the right, rolled {roll:+.2f}° "
-            f"(onset of slide-off {np.degrees(response.reference_roll):.2f}°)"
+            f"{response.system.ground.name}, worst moment, {time:.3f} s: wheelset "
+            f"{abs(shift):.1f} mm to the {side}, roll on the track {roll:+.2f}° "
+            f"(slide-off begins at {np.degrees(response.reference_roll):.2f}°)"
         ),
         fontsize=9,
         x=0.01,
@@ -122,7 +123,8 @@ def _draw_contact(ax: Axes, response: Response, frame: int, side: str) -> None:
     state = " and ".join(touching) + " in contact" if touching else "off the rail"
     centre = 1e3 * sign * rail_centre(pair, rail)
     ax.set_xlim(centre - 95.0, centre + 95.0)
-    ax.set_ylim(60.0, -60.0)
+    lifted = 1e3 * float(np.interp(0.0, wheel.y, place_z))
+    ax.set_ylim(60.0, min(-75.0, lifted - 60.0))
     ax.set_aspect("equal")
     ax.axhline(0.0, color=GREY, linewidth=0.5, linestyle=":")
     label(ax, "y in the track, mm", "z, mm", f"{side.capitalize()}: {state}; {load:.0f} kN")

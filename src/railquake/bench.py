@@ -1,0 +1,271 @@
+"""How fast it is: one table, measured in one run, beside OpenSees.
+
+    python -m railquake.bench [--json]
+
+Each rate is the best of several repetitions on one core.  The coupled rates are for a BART car on
+a Berkeley pier under a strong synthetic motion, all measures and the energy audit on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from railquake.assessment import versions
+from railquake.inputs.scenario import scenario
+from railquake.physics import state
+from railquake.simulation import simulate
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from railquake.inputs.scenario import Scenario
+    from railquake.inputs.support import Pier
+
+__all__ = ["main", "opensees_pier", "run_bench"]
+
+MOTION = {"seed": 18, "duration": "20 s", "pga": "1.0 g", "ground_frequency": "1.8 Hz"}
+OPENSEES_STEPS = 20_000
+
+
+def _case(**inputs: Any) -> Scenario:
+    return scenario(synthetic={**MOTION, **inputs.pop("motion", {})}, **inputs)
+
+
+def _rate(case: Scenario, repeats: int) -> tuple[float, float]:
+    """Best and median steps per second of whole runs, compilation and assembly apart."""
+    simulate(case)
+    rates = []
+    for _ in range(repeats):
+        response = simulate(case)
+        rates.append(response.steps / response.march_s)
+    return max(rates), statistics.median(rates)
+
+
+def opensees_pier(
+    pier: Pier,
+    acceleration: np.ndarray,
+    dt: float,
+    step: float,
+    steps: int,
+    *,
+    gravity: float = 1.0,
+    history: Callable[[float], None] | None = None,
+) -> float:
+    """Run the pier alone in OpenSees, with its own DegradingPinchedBW hinge.
+
+    Parameters
+    ----------
+    pier : Pier
+    acceleration : array
+        Ground acceleration at intervals of ``dt``, times ``gravity`` in m/s2.
+    dt, step : float
+        Interval of the record and time step, s.
+    steps : int
+    gravity : float
+    history : callable, optional
+        Called after each step with the top's displacement; without it all steps are one call.
+
+    Returns
+    -------
+    float
+        Wall time of the analysis, s.
+
+    Raises
+    ------
+    ImportError
+        Without the package ``opensees`` (extra ``railquake[bench]``).
+    """
+    import numpy as np
+    import opensees.openseespy as ops
+
+    from railquake.physics.pier import natural_frequencies, stiffness_matrix
+
+    ops.wipe()
+    ops.model("basic", "-ndm", 2, "-ndf", 3)
+    for tag, y in ((1, 0.0), (2, 0.0), (3, pier.length)):
+        ops.node(tag, 0.0, y)
+    ops.fix(1, 1, 1, 1)
+    ops.fix(2, 1, 1, 0)
+    ops.fix(3, 0, 1, 0)
+    ops.mass(2, 0.0, 0.0, pier.base_rotational_inertia)
+    ops.mass(3, pier.mass, 0.0, pier.rotational_inertia)
+    h = pier.bouc_wen
+    if pier.hinge == "elastic":
+        ops.uniaxialMaterial("Elastic", 1, h.k0)
+    else:
+        ops.uniaxialMaterial(
+            "DegradingPinchedBW", 1, h.m, h.Fy, h.xu, h.alpha, h.k0, h.n, h.eta0, h.beta0,
+            h.rho_eps, h.rho_x, h.phi, h.delta_k, h.delta_f, h.sigma, h.u, h.eps_p, h.rho_p,
+            1e-12, 1000,
+        )  # fmt: skip
+    ops.element("zeroLength", 1, 1, 2, "-mat", 1, "-dir", 6, "-doRayleigh", 1)
+    ops.geomTransf("Linear", 1)
+    # the area is no part of the model: the top is held vertically
+    ops.element(
+        "elasticBeamColumn", 2, 2, 3, 1.0, pier.youngs_modulus, pier.second_moment_of_area, 1
+    )
+    ops.timeSeries("Path", 1, "-dt", dt, "-values", *acceleration.tolist(), "-factor", gravity)
+    ops.pattern("UniformExcitation", 1, 1, "-accel", 1)
+    mass = np.array([pier.mass, pier.base_rotational_inertia, pier.rotational_inertia])
+    initial = stiffness_matrix(pier.youngs_modulus, pier.second_moment_of_area, pier.length, h.k0)
+    first, second = natural_frequencies(mass, initial)[:2]
+    zeta = pier.damping_ratio
+    ops.rayleigh(
+        2.0 * zeta * first * second / (first + second), 0.0, 2.0 * zeta / (first + second), 0.0
+    )
+    ops.constraints("Plain")
+    ops.numberer("Plain")
+    ops.system("ProfileSPD")
+    ops.test("NormDispIncr", 1e-12, 50)
+    ops.algorithm("Newton")
+    ops.integrator("Newmark", 0.5, 0.25)
+    ops.analysis("Transient")
+    begin = time.perf_counter()
+    if history is None:
+        failed = ops.analyze(steps, step)
+    else:
+        failed = 0
+        for _ in range(steps):
+            failed = failed or ops.analyze(1, step)
+            history(float(ops.nodeDisp(3, 1)))
+    spent = time.perf_counter() - begin
+    ops.wipe()
+    if failed:
+        raise RuntimeError("OpenSees did not converge")
+    return spent
+
+
+def _opensees_rate(repeats: int, steps: int) -> float | None:
+    case = _case()
+    ground = case.ground_motion()
+    try:
+        spent = [
+            opensees_pier(case.support, ground.acceleration, ground.dt, 5e-4, steps)  # type: ignore[arg-type]
+            for _ in range(repeats)
+        ]
+    except ImportError:
+        return None
+    return steps / min(spent)
+
+
+def _command_seconds(cache: str | None, repeats: int = 1, duration: str = "40 s") -> float:
+    """Median wall time of ``railquake run`` in a process of its own, files and pictures written."""
+    case = _case(motion={"duration": duration})
+    environment = dict(os.environ)
+    if cache is not None:
+        environment["RAILQUAKE_CACHE_DIR"] = cache
+    times = []
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "case.toml"
+        path.write_text(case.to_toml())
+        command = [sys.executable, "-m", "railquake", "run", str(path), "--out", f"{folder}/out"]
+        for _ in range(repeats):
+            begin = time.perf_counter()
+            subprocess.run(command, env=environment, check=True, capture_output=True)
+            times.append(time.perf_counter() - begin)
+    return statistics.median(times)
+
+
+def _import_seconds(repeats: int = 5) -> float:
+    times = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        subprocess.run([sys.executable, "-c", "import railquake"], check=True)
+        times.append(time.perf_counter() - begin)
+    return statistics.median(times)
+
+
+def _processor() -> str:
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def run_bench(*, repeats: int = 5, seconds: bool = True, short: bool = False) -> dict[str, Any]:
+    """Measure everything.
+
+    Parameters
+    ----------
+    repeats : int
+        Runs of each kind, of which the best counts.
+    seconds : bool
+        Whether to time whole processes, too (a minute or so).
+    short : bool
+        One second of motion only, to see that it works.
+
+    Returns
+    -------
+    dict
+        Rates in steps per second by the names of ``--json``; None for what could not be measured.
+    """
+    motion = {"duration": "6 s"} if short else {}
+    scalar, median = _rate(_case(motion=motion), repeats)
+    elastic, _ = _rate(_case(motion=motion, hinge="elastic"), repeats)
+    grid_motion = {"duration": "6 s"}
+    grid, _ = _rate(_case(motion=grid_motion, contact="grid"), max(1, repeats // 2))
+    opensees = _opensees_rate(max(1, repeats // 2), 500 if short else OPENSEES_STEPS)
+    row: dict[str, Any] = {
+        "scalar_steps_per_s": scalar,
+        "scalar_median_steps_per_s": median,
+        "elastic_steps_per_s": elastic,
+        "grid_steps_per_s": grid,
+        "opensees_pier_steps_per_s": opensees,
+        "scalar_over_opensees": None if opensees is None else scalar / opensees,
+    }
+    if seconds:
+        with tempfile.TemporaryDirectory() as cache:
+            row["first_result_s"] = _command_seconds(cache)
+            row["warm_command_s"] = _command_seconds(cache, 3)
+        row["import_s"] = _import_seconds()
+    return {**row, "state_rows": state.VEHICLE, "processor": _processor(), "versions": versions()}
+
+
+ROWS = (
+    ("scalar_steps_per_s", "coupled, Bouc-Wen, table contact, one core", "steps/s"),
+    ("scalar_median_steps_per_s", "... median of the repetitions", "steps/s"),
+    ("elastic_steps_per_s", "coupled, elastic hinge", "steps/s"),
+    ("grid_steps_per_s", "coupled, Bouc-Wen, grid contact", "steps/s"),
+    ("opensees_pier_steps_per_s", "OpenSees, the pier alone, its own Bouc-Wen", "steps/s"),
+    ("scalar_over_opensees", "coupled over OpenSees' pier alone", "times"),
+    ("first_result_s", "first run of a 40 s motion, compiling included", "s"),
+    ("warm_command_s", "the same again, from command to files", "s"),
+    ("import_s", "import railquake, the interpreter's start included", "s"),
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the table, or JSON."""
+    parser = argparse.ArgumentParser(prog="railquake bench", description=__doc__)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    wanted = parser.parse_args(arguments)
+    row = run_bench()
+    if wanted.json:
+        print(json.dumps(row, indent=2))
+        return 0
+    print(f"{row['processor']}, Python {platform.python_version()}")
+    for key, text, unit in ROWS:
+        value = row.get(key)
+        shown = "not measured (pip install railquake[bench])" if value is None else f"{value:,.3g}"
+        if value is not None and value >= 1000.0:
+            shown = f"{value:,.0f}"
+        print(f"{text:52} {shown:>14} {unit if value is not None else ''}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

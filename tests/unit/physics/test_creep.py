@@ -1,0 +1,72 @@
+"""Kalker's coefficients and the laws that bound the linear force by friction."""
+
+import csv
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from railquake.assembly.system import CREEP_LAWS
+from railquake.physics.creep import kalker_coefficients
+from railquake.probe import creep_force
+
+LAWS = sorted(CREEP_LAWS)
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.25, 0.5])
+def test_coefficients_are_kalkers_own_at_the_nodes_of_his_table(shared, poisson):
+    with open(shared / "oracles" / "kalker_table.csv") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    for row in rows:
+        ratio = float(row["ratio"]) if row["part"] == "a/b<=1" else 1.0 / float(row["ratio"])
+        found = kalker_coefficients(np.array([ratio]), poisson)
+        for name, value in zip(("C11", "C22", "C23"), found, strict=True):
+            assert value[0] == pytest.approx(float(row[f"{name}_nu{poisson:g}"]), rel=1e-9)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_slope_at_zero_creepage_is_kalkers(law):
+    factor = CREEP_LAWS[law]
+    for tau in (1e-6, 1e-5):
+        assert factor(tau, 1.0) == pytest.approx(1.0, abs=tau)
+    assert factor(0.0, 1.0) == 1.0
+
+
+@pytest.mark.parametrize("law", LAWS)
+@given(linear=st.floats(-1e7, 1e7), limit=st.floats(0.0, 1e6))
+def test_force_never_exceeds_friction_and_opposes_the_creepage(law, linear, limit):
+    force = linear * CREEP_LAWS[law](linear, limit)
+    assert abs(force) <= limit * (1.0 + 1e-12) + 1e-12
+    assert force * linear >= 0.0
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_force_grows_with_the_creepage_and_reaches_friction(law):
+    tau = np.linspace(0.0, 50.0, 2000)
+    force = np.array([t * CREEP_LAWS[law](t, 1.0) for t in tau])
+    assert np.all(np.diff(force) > -1e-12)
+    assert force[-1] == pytest.approx(1.0, abs=0.02)  # Polach's gets there slowly
+
+
+def test_shen_hedrick_elkins_slides_from_three_times_the_limit():
+    factor = CREEP_LAWS["she"]
+    assert factor(3.0, 1.0) == pytest.approx(1.0 / 3.0, rel=1e-12)
+    assert 1.5 * factor(1.5, 1.0) == pytest.approx(1.5 - 0.75 + 0.125, rel=1e-12)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_force_stays_within_its_stated_deviation_from_contact(shared, law):
+    """Each law's largest deviation without spin, as the theory page states it (F over mu N)."""
+    stated = {"she": 0.08, "coulomb": 0.26, "carter": 0.10, "polach": 0.13}
+    with open(shared / "oracles" / "contact_creep.csv") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    worst = 0.0
+    for row in rows:
+        if float(row["phi_1_per_m"]) != 0.0:
+            continue
+        load = 1e3 * float(row["N_kN"])
+        axes = (1e-3 * float(row["a_mm"]), 1e-3 * float(row["b_mm"]))
+        force, _ = creep_force(axes, load, float(row["upsilon_y"]), 0.0, 0.3, 82e9, 0.28, law)
+        worst = max(worst, abs(force / (0.3 * load) - float(row["Fy_over_muN"])))
+    assert worst < stated[law]

@@ -1,0 +1,268 @@
+"""The command line: what it prints and writes, and what it refuses in one line."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from railquake.cli import main
+
+CASE = """
+[vehicle]
+preset = "bart"
+speed = "80 km/h"
+[support]
+preset = "bart-berkeley"
+[wheelrail]
+preset = "bart"
+[motion]
+synthetic = { seed = 3, duration = "2 s", pga = "0.6 g", highpass_frequency = "0.6 Hz" }
+"""
+
+SUMMARY_KEYS = [
+    "status",
+    "derailed",
+    "derailment_mode",
+    "pga_m_s2",
+    "pgv_m_s",
+    "pbd_m",
+    "pbv_m_s",
+    "pba_m_s2",
+    "hinge_rotation_peak_rad",
+    "base_moment_peak_n_m",
+    "top_rotation_peak_rad",
+    "relative_roll_peak_rad",
+    "uplift_ratio",
+    "lateral_shift_peak_m",
+    "wheel_load_peak_n",
+    "lateral_force_peak_n",
+    "lateral_force_filtered_peak_n",
+    "off_rail_time_s",
+    "energy_residual",
+    "steps",
+    "steps_per_s",
+    "wall_s",
+    "dt_s",
+    "contact",
+    "versions",
+]
+
+
+@pytest.fixture
+def case(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    return path
+
+
+def refused(capsys, *arguments):
+    """The single line with which a command is refused."""
+    assert main([str(a) for a in arguments]) == 2
+    printed = capsys.readouterr()
+    lines = [line for line in printed.err.splitlines() if "compiling" not in line]
+    assert len(lines) == 1, printed.err
+    assert "Traceback" not in printed.err
+    return lines[0]
+
+
+def test_run_writes_numbers_histories_and_pictures(case, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["run", str(case), "--out", str(out), "--set", "motion.scale=1.1"]) == 0
+    row = json.loads((out / "summary.json").read_text())
+    assert set(SUMMARY_KEYS) <= set(row)
+    assert row["pga_m_s2"] == pytest.approx(1.1 * 0.6 * 9.80665)
+    names = {path.name for path in out.iterdir()}
+    assert {"history.nc", "events.csv", "case.toml", "section.png", "hinge-loop.png"} <= names
+    assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
+    import xarray
+
+    with xarray.open_dataset(out / "history.nc", engine="h5netcdf") as history:
+        assert "bridge_displacement_m" in history
+    # the case it wrote gives the same run again
+    assert main(["run", str(out / "case.toml"), "--out", str(tmp_path / "again"), "--json"]) == 0
+    again = json.loads((tmp_path / "again" / "summary.json").read_text())
+    assert again["pbd_m"] == row["pbd_m"]
+
+
+def test_a_folder_in_use_keeps_what_is_not_ours(case, tmp_path, capsys):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "notes.txt").write_text("mine")
+    (out / "hinge-loop.png").write_text("of a former run")
+    at_grade = ["--set", "support.kind=at-grade"]
+    assert main(["run", str(case), "--out", str(out), *at_grade]) == 0
+    assert (out / "notes.txt").read_text() == "mine"
+    assert not (out / "hinge-loop.png").exists()
+
+
+def test_demo_needs_nothing(tmp_path, capsys):
+    assert main(["demo", "--out", str(tmp_path / "demo"), "--json"]) == 0
+    row = json.loads(capsys.readouterr().out)
+    assert row["off_rail_time_s"] > 0.0  # worth looking at: wheels lift
+    assert (tmp_path / "demo" / "relative-roll.png").stat().st_size > 10_000
+
+
+def test_modes_as_json(capsys):
+    assert main(["modes", "bart", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["frequencies_hz"][:3] == pytest.approx([0.292, 1.009, 1.034], rel=2e-3)
+    assert found["labels"][:3] == [
+        "Carbody lower sway",
+        "Carbody upper sway",
+        "Carbody bounce",
+    ]
+
+
+def test_presets_are_listed_and_printed(capsys):
+    assert main(["presets"]) == 0
+    assert "bart-berkeley" in capsys.readouterr().out
+    assert main(["presets", "bart-berkeley"]) == 0
+    assert "beta0" in capsys.readouterr().out
+    assert main(["presets", "--json"]) == 0
+    assert {"vehicle", "support", "wheelrail"} == {
+        preset["kind"] for preset in json.loads(capsys.readouterr().out)
+    }
+
+
+def test_check_says_what_would_be_run(case, capsys):
+    assert main(["check", str(case), "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["ok"]
+    assert facts["dt_s"] < facts["dt_critical_s"]
+
+
+def test_probe_motion_measures_a_record(shared, capsys):
+    """Peaks from the suite's manifest."""
+    file = shared / "records" / "paper_suite" / "RSN006_IMPVALLH2.AT2"
+    assert main(["probe", "motion", str(file), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["dt_s"] == 0.01
+    assert found["npts"] == 5330
+    assert found["pga_m_s2"] == pytest.approx(0.210743 * 9.80665, rel=1e-4)
+    assert found["pgv_m_s"] == pytest.approx(0.3136, rel=1e-3)
+
+
+def test_probe_hinge_writes_the_columns_of_the_contract(tmp_path, capsys):
+    path, out = tmp_path / "x.csv", tmp_path / "m.csv"
+    path.write_text("x\n0\n1e-3\n-1e-3\n")
+    arguments = ["--preset", "bart-berkeley", "--path", str(path), "--out", str(out)]
+    assert main(["probe", "hinge", *arguments, "--set", "n=1.2", "--set", "m=1.0"]) == 0
+    lines = out.read_text().splitlines()
+    assert lines[0] == "x,moment,z,damage"
+    assert len(lines) == 4
+
+
+def test_probe_contact_gives_a_row_a_patch(capsys):
+    arguments = ["--preset", "s1002-60e1", "--shift", "0.0", "--load", "50e3", "--json"]
+    assert main(["probe", "contact", *arguments]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["side"] for row in rows] == ["left", "right"]
+    assert set(rows[0]) == {
+        "side", "y_m", "z_m", "angle_rad", "approach_m", "normal_n", "a_m", "b_m",
+    }  # fmt: skip
+    assert rows[0]["y_m"] == pytest.approx(-rows[1]["y_m"], abs=1e-9)
+
+
+def test_probe_creep_opposes_the_creepage(capsys):
+    arguments = "--semi-axes 6e-3,5e-3 --load 50e3 --creepage 1e-3 --spin 0 --mu 0.3 --json"
+    assert main(["probe", "creep", *arguments.split(), "--law", "coulomb"]) == 0
+    assert json.loads(capsys.readouterr().out)["lateral_force_n"] < 0.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--set", "vehicle.sped=3"], "vehicle.sped"),
+        (["--set", "vehicle.preset=brat"], "brat"),
+        (["--set", "vehicle.speed=80"], None),
+        (["--set", "vehicle.speed=80 km"], "vehicle.speed"),
+        (["--set", "support.mass=3 m"], "support.mass"),
+        (["--set", "support.mass=-1"], "support.mass"),
+        (["--set", "support.mass=nan"], "support.mass"),
+        (["--set", "support.bouc_wen.alpha=1.5"], "alpha"),
+        (["--set", "solver.dt=4e-4 s", "--set", "vehicle.speed=0.1 km/h"], "solver.dt"),
+        (["--set", "motion.record=nothing.AT2"], None),
+        (["--set", "nonsense"], "nonsense"),
+    ],
+)
+def test_wrong_values_are_refused_by_name(case, tmp_path, capsys, arguments, words):
+    if words is None and "80" in arguments[1]:
+        # a bare number is SI: 80 m/s is allowed
+        assert main(["check", str(case), *arguments]) == 0
+        return
+    line = refused(capsys, "run", case, "--out", tmp_path / "out", *arguments)
+    assert words is None or words in line
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["asterisks", "dt_zero", "empty", "nan", "npts_too_large", "truncated"],
+)
+def test_bad_records_are_refused_before_anything_is_written(shared, case, tmp_path, capsys, name):
+    file = shared / "records" / "formats" / "bad" / f"{name}.AT2"
+    assert name in refused(capsys, "probe", "motion", file)
+    text = CASE.split("[motion]")[0] + f'[motion]\nrecord = "{file}"\n'
+    case.write_text(text)
+    assert name in refused(capsys, "run", case, "--out", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "nothere.toml", "--out", "x"],
+        ["run", "--no-such-option"],
+        ["nosuchcommand"],
+        ["modes", "brat"],
+        ["presets", "brat"],
+        ["probe", "hinge", "--set", "bogus=1"],
+        ["probe", "contact", "--load", "-5"],
+        ["probe", "contact", "--shift", "50"],
+        ["probe", "creep", "--semi-axes", "6e-3", "--load", "50e3"],
+        ["probe", "creep", "--semi-axes", "6e-3,5e-3", "--load", "50e3", "--law", "hertz"],
+        ["probe", "motion", "."],
+    ],
+)
+def test_wrong_use_is_one_line(capsys, arguments):
+    assert refused(capsys, *arguments).startswith("railquake: ")
+
+
+def test_path_with_a_value_that_is_no_number_names_the_line(tmp_path, capsys):
+    path = tmp_path / "x.csv"
+    path.write_text("x\n0\nabc\n")
+    assert "line 3" in refused(capsys, "probe", "hinge", "--path", path)
+
+
+def test_results_cannot_go_where_a_file_is(case, tmp_path, capsys):
+    (tmp_path / "taken").write_text("")
+    assert "taken" in refused(capsys, "run", case, "--out", tmp_path / "taken")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_ctrl_c_leaves_nothing_behind(tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text(CASE.replace("2 s", "600 s"))
+    out = tmp_path / "out"
+    process = subprocess.Popen(
+        [sys.executable, "-m", "railquake", "run", str(case), "--out", str(out)],
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ,
+    )
+    time.sleep(4.0)
+    process.send_signal(signal.SIGINT)
+    _, printed = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in printed
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["case.toml"]
+
+
+def test_examples_are_good_cases(capsys):
+    example = Path(__file__).resolve().parents[2] / "examples" / "case.toml"
+    assert main(["check", str(example)]) == 0
