@@ -348,7 +348,7 @@ def _fill_support(
         q[constant.K0] = 1.0
         q[constant.TOLERANCE] = 1.0
         q[constant.MAX_ITERATIONS] = 1.0
-        return np.eye(3), boucwen.advance_elastic, (1.0,) + (0.0,) * 14 + (1.0, 1.0, 1.0)
+        return np.eye(3), boucwen.advance_elastic, (1.0,) + (0.0,) * 14 + (1.0, 1.0)
     hinge = support.bouc_wen
     mass = np.array([support.mass, support.base_rotational_inertia, support.rotational_inertia])
     column = pier.stiffness_matrix(

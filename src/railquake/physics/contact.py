@@ -167,8 +167,8 @@ def calibrated_hysteresis(restitution: float) -> float:
     def excess(alpha: float) -> float:
         return alpha * (1.0 + restitution) - math.log((1.0 + alpha) / (1.0 - alpha * restitution))
 
-    # alpha = 0 is the trivial root; the wanted one lies below the pole at 1/c_r
-    return float(brentq(excess, 1e-9, (1.0 - 1e-13) / restitution, xtol=1e-15))
+    # alpha = 0 is the trivial root; the wanted one lies above 3 (1 - c_r)/2 and below the pole
+    return float(brentq(excess, 1.0 - restitution, (1.0 - 1e-13) / restitution, xtol=1e-15))
 
 
 def onset_hysteresis(
