@@ -80,7 +80,7 @@ def test_printed_law_rebounds_higher_than_its_coefficient(restitution, actual):
 @pytest.mark.parametrize(("restitution", "alpha"), [(0.9, 0.167), (0.6, 0.975), (0.3, 3.09)])
 def test_calibrated_law_rebounds_at_its_coefficient(restitution, alpha):
     """physics.md, section 2, Eq. 7."""
-    assert calibrated_hysteresis(restitution) == pytest.approx(alpha, rel=2e-3)
+    assert calibrated_hysteresis(restitution) == pytest.approx(alpha, rel=5e-3)
     assert rebound(calibrated_hysteresis(restitution)) == pytest.approx(restitution, rel=0.01)
 
 
