@@ -170,7 +170,7 @@ class Response:
         return "overturned right" if end[state.ROLL] > 0.0 else "overturned left"
 
     @property
-    def time(self) -> Array:
+    def times(self) -> Array:
         """Times of the history, s."""
         frame = self.system.dt * self.system.frame_steps
         times: Array = np.arange(len(self.frames), dtype=float) * frame
@@ -198,7 +198,7 @@ class Response:
     def events(self) -> tuple[Event, ...]:
         """All events in the order of their beginnings."""
         flags = np.rint(self.channel("events")).astype(int)
-        time = self.time
+        time = self.times
         found = []
         for k, name in enumerate(EVENT_NAMES):
             holds = (flags >> k) & 1

@@ -47,7 +47,7 @@ def test_peaks_and_history(shared, hinge):
     time = np.array([float(row["t"]) for row in rows])
     for channel, column in zip(CHANNELS, ("u", "theta1", "theta2", "M_base"), strict=True):
         expected = np.array([float(row[column]) for row in rows])
-        ours = np.interp(time, response.time, response.channel(channel))
+        ours = np.interp(time, response.times, response.channel(channel))
         assert np.abs(ours - expected).max() < 2e-3 * np.abs(expected).max(), channel
 
 

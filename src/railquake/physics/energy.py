@@ -48,8 +48,6 @@ class EnergyAudit:
         Lost to the normal force's hysteresis and to creepage; brought in by spin.
     whole_residual, contact_residual : float
         What is left of each balance; of the contact's, positive is loss and negative is gain.
-    dissipated : float
-        Dashpots, Rayleigh, hinge, impact and creep together.
     """
 
     ground: float
@@ -70,7 +68,7 @@ class EnergyAudit:
 
     @property
     def dissipated(self) -> float:
-        """Energy dissipated, J."""
+        """Dashpots, Rayleigh, hinge, impact and creep together, J."""
         return self.dashpots + self.rayleigh + self.hinge + self.impact + self.creep
 
     @property

@@ -83,7 +83,7 @@ def _title(response: Response) -> str:
 
 
 def _plot(ax: Axes, response: Response, name: str, factor: float = 1.0, **style: Any) -> None:
-    time, values = thinned(response.time, factor * response.channel(name))
+    time, values = thinned(response.times, factor * response.channel(name))
     style.setdefault("linewidth", 0.8)
     ax.plot(time, values, **style)
 
@@ -124,7 +124,7 @@ def _histories(response: Response, path: Path) -> Path:
     label(axes[-1], "time, s", "roll, mrad")
     legend(axes[-1], loc="upper right", ncols=3)
     _mark_end(axes[-1], response)
-    axes[-1].set_xlim(0.0, response.time[-1])
+    axes[-1].set_xlim(0.0, response.times[-1])
     made.suptitle(_title(response), fontsize=10, x=0.01, ha="left")
     return save(made, path)
 
@@ -171,8 +171,8 @@ def _wheel_loads(response: Response, path: Path) -> Path:
         response.channel("wheel_load_left_filtered_n"),
         response.channel("wheel_load_right_filtered_n"),
     )
-    axes[2].plot(*thinned(response.time, 1.0 - lowest / static), color=BLUE, linewidth=0.9)
-    axes[2].plot(*thinned(response.time, total / weight), color=GREY, linewidth=0.8, label="total")
+    axes[2].plot(*thinned(response.times, 1.0 - lowest / static), color=BLUE, linewidth=0.9)
+    axes[2].plot(*thinned(response.times, total / weight), color=GREY, linewidth=0.8, label="total")
     axes[2].axhline(1.0, color=RED, linewidth=0.8, linestyle="--")
     axes[2].set_ylim(-0.1, 1.6)
     label(
@@ -181,7 +181,7 @@ def _wheel_loads(response: Response, path: Path) -> Path:
     )  # fmt: skip
     for ax in axes:
         _mark_end(ax, response)
-    axes[2].set_xlim(0.0, response.time[-1])
+    axes[2].set_xlim(0.0, response.times[-1])
     made.suptitle(_title(response), fontsize=10, x=0.01, ha="left")
     return save(made, path)
 
@@ -190,7 +190,7 @@ def _relative_roll(response: Response, path: Path) -> Path:
     made, ax = figure(8.5, 4.2)
     onset = np.degrees(response.reference_roll)
     roll = np.degrees(response.channel("relative_roll_rad"))
-    ax.plot(*thinned(response.time, roll), color=BLUE, linewidth=1.0)
+    ax.plot(*thinned(response.times, roll), color=BLUE, linewidth=1.0)
     for sign in (-1.0, 1.0):
         ax.axhline(sign * onset, color=RED, linewidth=1.0, linestyle="--")
     peak = float(np.nanmax(np.abs(roll)))
@@ -202,7 +202,7 @@ def _relative_roll(response: Response, path: Path) -> Path:
     )  # fmt: skip
     seen = set()
     bands = {"flange contact": (0.0, 0.03), "uplift": (0.03, 0.06), "onset": (0.06, 0.09)}
-    end = response.time[-1]
+    end = response.times[-1]
     for event in response.events:
         colour = EVENT_COLOURS[event.name]
         until = end if np.isnan(event.end_s) else event.end_s
@@ -237,7 +237,7 @@ def _hinge_loop(response: Response, path: Path) -> Path:
     points = np.column_stack([rotation[::stride], moment[::stride]])
     segments = np.stack([points[:-1], points[1:]], axis=1)
     lines = LineCollection(list(segments), cmap="viridis", linewidths=0.9)
-    lines.set_array(response.time[::stride][:-1])
+    lines.set_array(response.times[::stride][:-1])
     ax.add_collection(lines)
     ax.autoscale()
     bar = made.colorbar(lines, ax=ax, pad=0.02)

@@ -57,7 +57,7 @@ def draw_section(response: Response, path: Path) -> Path:
     _draw_car(axes[0], response, frame)
     for ax, side in ((axes[1], "left"), (axes[2], "right")):
         _draw_contact(ax, response, frame, side)
-    time = float(response.time[frame])
+    time = float(response.times[frame])
     roll = float(np.degrees(response.channel("relative_roll_rad")[frame]))
     shift = 1e3 * float(response.channel("lateral_shift_m")[frame])
     side = "right" if shift > 0.0 else "left"
