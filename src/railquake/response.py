@@ -192,7 +192,7 @@ class Response:
             name: ("time_s", self.frames[:, k], {"units": unit, "long_name": meaning})
             for k, (name, _, unit, meaning) in enumerate(channels(self.system.vehicle.bodies))
         }
-        return xarray.Dataset(variables, coords={"time_s": ("time_s", self.time, {"units": "s"})})
+        return xarray.Dataset(variables, coords={"time_s": ("time_s", self.times, {"units": "s"})})
 
     @property
     def events(self) -> tuple[Event, ...]:

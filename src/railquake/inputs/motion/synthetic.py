@@ -283,7 +283,7 @@ def envelope(time: NDArray[np.float64], strong_duration: float, rise: float) -> 
 
 
 def filter_gain(frequency: NDArray[np.float64], p: SyntheticParameters) -> NDArray[np.complex128]:
-    """Transfer function of the two filters at frequencies in Hz; its magnitude squared is S / S0."""
+    """Transfer function of the two filters at frequencies in Hz; its square is S / S0."""
     w = 2.0 * np.pi * frequency
     wg, wf = 2.0 * np.pi * p.ground_frequency, 2.0 * np.pi * p.highpass_frequency
     soil = (wg**2 + 2j * p.ground_damping * wg * w) / (
