@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario as Scenario
     from railquake.inputs.scenario import load_scenario as load_scenario
     from railquake.inputs.scenario import scenario as scenario
+    from railquake.lockstep import simulate_many as simulate_many
     from railquake.response import Response as Response
     from railquake.simulation import simulate as simulate
 
@@ -35,6 +36,7 @@ _HOMES = {
     "read_motion": "railquake.inputs.motion",
     "scenario": "railquake.inputs.scenario",
     "simulate": "railquake.simulation",
+    "simulate_many": "railquake.lockstep",
 }
 
 __all__ = ["__version__", *_HOMES]

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
+from collections import OrderedDict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from threading import Lock
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -21,7 +24,16 @@ from railquake.assembly.vehicle import VehicleMatrices, vehicle_matrices
 from railquake.errors import InputError
 from railquake.inputs.profile import flange_tip
 from railquake.inputs.support import AtGrade, Pier, PrescribedTrack
-from railquake.physics import boucwen, constant, creep, march, newmark, pier, state
+from railquake.physics import (
+    boucwen,
+    constant,
+    creep,
+    elementary,
+    march,
+    newmark,
+    pier,
+    state,
+)
 from railquake.physics.contact import calibrated_hysteresis, printed_hysteresis
 from railquake.physics.kernel import PYTHON, SCALAR, Kernel, Target, bind
 from railquake.physics.profiles import Geometry, axis_constants
@@ -105,13 +117,25 @@ class System:
         """Frames in the run."""
         return len(self.drive) - 1
 
+    @property
+    def block(self) -> int:
+        """Rows of the vehicle's first block; see `vehicle.lateral_block`."""
+        return _sizes(self.vehicle)["BLOCK"]
+
     def kernel(self, target: Target = SCALAR) -> Kernel:
-        """Bind `march.march` with this scenario's laws."""
+        """Bind `march.march`, or for several lanes `march.march_abreast`, with the chosen laws."""
         laws = dict(self.laws)
-        if target.one_scenario:
+        sizes = {**_sizes(self.vehicle), "LANES": target.lanes}
+        if target.lanes == 1:
             # what a patch does not need is not computed; many abreast must do it all the same
             laws[march.press] = march.press_closed
-        return bind(march.march, target, laws, _sizes(self.vehicle))
+            return bind(march.march, target, laws, sizes)
+        laws[elementary.exponential] = elementary.exponential_polynomial
+        laws[elementary.power] = elementary.power_polynomial
+        laws[boucwen.degradation_now] = boucwen.degradation_extrapolated
+        laws[boucwen.pinched_stiffness_now] = boucwen.pinched_stiffness_kept
+        laws.setdefault(boucwen.advance, boucwen.advance_linearised)
+        return bind(march.march_abreast, target, laws, sizes)
 
 
 def assemble(scenario: Scenario) -> System:
@@ -132,10 +156,83 @@ def assemble(scenario: Scenario) -> System:
         carry the standing train or the time step is above the critical one.
     """
     solver = scenario.solver
-    support = scenario.support
     ground = scenario.ground_motion()
-    frame_steps = max(1, round(solver.history_step / solver.dt))
-    drive = _drive(scenario, ground, solver.dt * frame_steps)
+    drive = _drive(scenario, ground, solver.dt * _frame_steps(solver))
+    drive.setflags(write=False)
+    if isinstance(scenario.support, PrescribedTrack):
+        rest = _assemble_at_rest(scenario, drive[0, [2, 4, 6]])
+    else:
+        rest = _remembered(scenario)
+    return System(
+        scenario,
+        ground,
+        rest.vehicle,
+        rest.start,
+        rest.constants,
+        rest.geometry,
+        drive,
+        rest.laws,
+        rest.critical_dt,
+        rest.static_wheel_load,
+    )
+
+
+class _AtRest(NamedTuple):
+    """What does not depend on the ground's motion; see `System`."""
+
+    vehicle: VehicleMatrices
+    start: Array
+    constants: Array
+    geometry: Geometry
+    laws: Laws
+    critical_dt: float
+    static_wheel_load: float
+
+
+_REMEMBERED: OrderedDict[tuple[Any, ...], _AtRest] = OrderedDict()
+_REMEMBERED_MOST = 64
+_REMEMBERED_LOCK = Lock()
+
+
+def _remembered(scenario: Scenario) -> _AtRest:
+    """`_assemble_at_rest`, once for all ground motions of a study."""
+    files = (scenario.wheelrail.wheel.file, scenario.wheelrail.rail.file)
+    stamps = tuple(
+        (path, found.st_mtime_ns, found.st_size)
+        for path in files
+        if path is not None and (found := _stat(path)) is not None
+    )
+    key = (scenario.vehicle, scenario.support, scenario.wheelrail, scenario.solver, stamps)
+    with _REMEMBERED_LOCK:
+        known = _REMEMBERED.get(key)
+        if known is not None:
+            _REMEMBERED.move_to_end(key)
+            return known
+    rest = _assemble_at_rest(scenario, None)
+    with _REMEMBERED_LOCK:
+        _REMEMBERED[key] = rest
+        while len(_REMEMBERED) > _REMEMBERED_MOST:
+            _REMEMBERED.popitem(last=False)
+    return rest
+
+
+def _stat(path: str) -> os.stat_result | None:
+    try:
+        return os.stat(path)
+    except OSError:
+        return None  # reading it says what is wrong
+
+
+def _frame_steps(solver: Solver) -> int:
+    """Time steps in a frame."""
+    return max(1, round(solver.history_step / solver.dt))
+
+
+def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
+    """Everything but the ground's motion; ``prescribed`` is a prescribed track's first place."""
+    solver = scenario.solver
+    support = scenario.support
+    frame_steps = _frame_steps(solver)
     matrices = vehicle_matrices(scenario.vehicle)
     dofs = len(matrices.mass)
     geometry = build_geometry(scenario.wheelrail)
@@ -200,8 +297,9 @@ def assemble(scenario: Scenario) -> System:
         _settlement(geometry, scenario, load),
         lambda track: _carried(track, dofs, scenario),
     )
-    if isinstance(support, PrescribedTrack):
-        vehicle_rest = vehicle_rest + _carried(drive[0, [2, 4, 6]], len(matrices.mass), scenario)
+    track = track_map @ pier_rest if prescribed is None else prescribed
+    if prescribed is not None:
+        vehicle_rest = vehicle_rest + _carried(prescribed, len(matrices.mass), scenario)
     S[state.U : state.U + 3, 0] = pier_rest
     S[state.Z], S[state.EPS], S[state.X_MAX] = hinge_rest[1:]
     S[state.MOMENT] = _moment(hinge_law, parameters, hinge_rest)
@@ -209,7 +307,6 @@ def assemble(scenario: Scenario) -> System:
     order = kernel_order(dofs)
     S[state.VEHICLE : state.VEHICLE + dofs, 0] = vehicle_rest[order]
     S[state.VEHICLE + dofs : state.VEHICLE + 2 * dofs, 0] = np.where(order % 3 == 0, drift, 0.0)
-    track = drive[0, [2, 4, 6]] if isinstance(support, PrescribedTrack) else track_map @ pier_rest
     S[state.TRACK_Y : state.TRACK_Y + 3, 0] = track
     _settle_forces(S, Q, geometry, laws, matrices)
 
@@ -222,10 +319,10 @@ def assemble(scenario: Scenario) -> System:
             "(contact stiffness and creep damping at static load); take a smaller one, "
             f"such as {_rounded_down(0.5 * critical):g} s"
         )
-    for array in (drive, *geometry):
+    for array in (S, Q, *geometry):
         if isinstance(array, np.ndarray):
             array.setflags(write=False)
-    return System(scenario, ground, matrices, S, Q, geometry, drive, laws, critical, load)
+    return _AtRest(matrices, S, Q, geometry, laws, critical, load)
 
 
 def _sizes(matrices: VehicleMatrices) -> dict[str, int]:

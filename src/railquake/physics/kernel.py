@@ -18,7 +18,16 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-__all__ = ["PYTHON", "SCALAR", "Kernel", "Target", "bind", "cache_folder", "source_hash"]
+__all__ = [
+    "LOCKSTEP",
+    "PYTHON",
+    "SCALAR",
+    "Kernel",
+    "Target",
+    "bind",
+    "cache_folder",
+    "source_hash",
+]
 
 Law = Callable[..., Any]
 
@@ -37,17 +46,19 @@ class Target:
         Part of the key of the on-disk cache.
     compiled : bool
         False leaves the functions to the interpreter.
-    one_scenario : bool
-        Whether it runs one scenario at a time, so that branches may skip work.
+    lanes : int
+        Scenarios abreast.  With one, branches may skip work.
     """
 
     name: str
     compiled: bool
-    one_scenario: bool = True
+    lanes: int = 1
 
 
 PYTHON = Target("python", compiled=False)
 SCALAR = Target("scalar", compiled=True)
+# Eight lanes of doubles fill a 512-bit register, and their state fits into a 32 kB cache.
+LOCKSTEP = Target("lockstep", compiled=True, lanes=8)
 
 
 @dataclass(frozen=True)

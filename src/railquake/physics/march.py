@@ -14,7 +14,7 @@ from railquake.physics import constant, state
 from railquake.physics.contact import normal_force, onset_hysteresis
 from railquake.physics.creep import reduction_shen_hedrick_elkins
 from railquake.physics.elementary import sin_cos
-from railquake.physics.pier import move_structure, move_track
+from railquake.physics.pier import move_structure, move_track, refresh_hinge
 from railquake.physics.profiles import (
     FIELDS,
     POSITIVE,
@@ -36,7 +36,7 @@ from railquake.physics.vehicle import (
     push_wheelset,
 )
 
-__all__ = ["LANES", "march", "step"]
+__all__ = ["LANES", "march", "march_abreast", "step"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -758,4 +758,63 @@ def march(
             history[frame + 1, k] = S[rows[k], 0]
         if S[state.LEAVING, 0] > 0.0:
             release(S, Q, 0)
+    state_in[:, :] = S
+
+
+def march_abreast(
+    state_in: Array,
+    constants: Array,
+    geometry: Geometry,
+    drive: Array,
+    first: Array,
+    stride: Array,
+    done: Array,
+    frames: int,
+    lanes: int,
+    refresh: int,
+) -> None:
+    """Run ``frames`` frames of several scenarios in lockstep, one to a lane.
+
+    Every lane takes the same path through the same instructions: what it gives does not depend on
+    its neighbours.
+
+    Parameters
+    ----------
+    state_in, constants : array, shape (rows, LANES)
+        As in `march`; the frame's number of steps must be the same in all lanes.
+    geometry : Geometry
+    drive : array, shape (any, 2 or 8)
+        Drives of all lanes, one after the other.
+    first, stride : array of int, shape (LANES,)
+        Row of ``drive`` at which each lane's first frame begins, and rows to the next frame (0
+        holds an idle lane where it is).
+    done : array of int, shape (LANES,)
+        Frames that each lane has behind it.
+    frames, lanes : int
+        ``lanes`` is LANES; as an argument it keeps the compiler from unrolling the loops.
+    refresh : int
+        Steps between two evaluations of the hinge's degradation.
+    """
+    S = np.empty((state_in.shape[0], LANES))
+    Q = np.empty((constants.shape[0], LANES))
+    S[:, :] = state_in
+    Q[:, :] = constants
+    steps = int(Q[constant.FRAME_STEPS, 0])
+    for frame in range(frames):
+        for lane in range(lanes):
+            begin_frame(S, Q, drive, first[lane] + frame * stride[lane], lane)
+        for n in range(steps):
+            if n % refresh == 0:
+                for lane in range(lanes):
+                    refresh_hinge(S, Q, lane)
+            step(S, Q, geometry, lanes)
+        for lane in range(lanes):
+            S[state.TIME, lane] = (done[lane] + frame + 1) * steps * Q[constant.DT, lane]
+        for lane in range(lanes):
+            filter_forces(S, Q, steps, lane)
+        for lane in range(lanes):
+            watch(S, Q, lane)
+        for lane in range(lanes):
+            if S[state.LEAVING, lane] > 0.0:
+                release(S, Q, lane)
     state_in[:, :] = S

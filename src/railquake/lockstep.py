@@ -1,0 +1,288 @@
+"""Many runs: scenarios advance in lockstep, some to a batch, on threads.
+
+Each batch holds as many lanes as `kernel.LOCKSTEP` has.  A lane whose scenario has ended is given
+the next one, so records of different lengths do not wait for each other.  Scenarios that need
+another kernel, another contact table or another number of steps a frame go to another batch.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from railquake.assembly import System, assemble
+from railquake.assessment import assess
+from railquake.errors import InputError
+from railquake.physics import state
+from railquake.physics.energy import audit
+from railquake.physics.kernel import LOCKSTEP
+from railquake.response import Response
+from railquake.simulation import simulate
+
+if TYPE_CHECKING:
+    from railquake.inputs.scenario import Scenario
+
+__all__ = ["simulate_many"]
+
+Row = dict[str, Any]
+REFRESH_STEPS = 10  # of the hinge's degradation
+CHUNK = 500  # frames that a batch runs without looking up
+OPEN_BATCHES = 16  # of one thread
+
+
+def simulate_many(
+    scenarios: Iterable[Scenario],
+    *,
+    threads: int | None = None,
+    refresh_steps: int = REFRESH_STEPS,
+) -> Iterator[tuple[int, Row]]:
+    """Run many scenarios; any may differ from any other.
+
+    Parameters
+    ----------
+    scenarios : iterable of Scenario
+        Drawn as they are needed, so that memory stays bounded.
+    threads : int, optional
+        All processors by default.
+    refresh_steps : int
+        Steps between two evaluations of the hinge's degradation; in between it is extrapolated.
+
+    Yields
+    ------
+    index : int
+        Place of the scenario among ``scenarios``; results come as they are ready.
+    row : dict
+        What `assess` gives.  A scenario that cannot be run has the status ``failed`` and its
+        ``error``.
+
+    Raises
+    ------
+    InputError
+        If ``threads`` or ``refresh_steps`` is not positive.
+
+    Notes
+    -----
+    The step is that of `simulate`, but for the hinge: one consistently linearised solve a step, and
+    its degradation extrapolated between evaluations.  The grid method of contact is run by
+    `simulate` itself.
+    """
+    count = (os.cpu_count() or 1) if threads is None else threads
+    if count < 1:
+        raise InputError(f"threads: must be at least 1, found {count}")
+    if refresh_steps < 1:
+        raise InputError(f"refresh_steps: must be at least 1, found {refresh_steps}")
+    return _results(enumerate(scenarios), count, refresh_steps)
+
+
+def _results(
+    scenarios: Iterator[tuple[int, Scenario]], threads: int, refresh_steps: int
+) -> Iterator[tuple[int, Row]]:
+    found: queue.Queue[tuple[int, Row] | BaseException | None] = queue.Queue(maxsize=256)
+    stop = threading.Event()
+    drawing = threading.Lock()
+
+    def put(item: tuple[int, Row] | BaseException | None) -> None:
+        while not stop.is_set():
+            try:
+                found.put(item, timeout=0.2)
+                return
+            except queue.Full:
+                continue  # whoever asked is busy with the last ones
+
+    def draw() -> tuple[int, Scenario] | None:
+        with drawing:
+            return None if stop.is_set() else next(scenarios, None)
+
+    def work() -> None:
+        try:
+            for item in _run(iter(draw, None), refresh_steps, stop):
+                put(item)
+        except BaseException as error:
+            put(error)
+        finally:
+            put(None)
+
+    workers = [threading.Thread(target=work, daemon=True) for _ in range(threads)]
+    for worker in workers:
+        worker.start()
+    try:
+        running = threads
+        while running:
+            item = found.get()
+            if item is None:
+                running -= 1
+            elif isinstance(item, BaseException):
+                raise item
+            else:
+                yield item
+    finally:
+        stop.set()
+        for worker in workers:
+            worker.join()
+
+
+def _run(
+    scenarios: Iterator[tuple[int, Scenario]], refresh_steps: int, stop: threading.Event
+) -> Iterator[tuple[int, Row]]:
+    """One thread's share."""
+    batches: dict[Any, _Batch] = {}
+    for index, scenario in scenarios:
+        begin = time.perf_counter()
+        try:
+            system = assemble(scenario)
+        except InputError as error:
+            yield index, {"status": "failed", "error": str(error)}
+            continue
+        if scenario.solver.contact == "grid":
+            yield index, assess(simulate(system))
+            continue
+        key = _group(system)
+        if key not in batches:
+            if len(batches) >= OPEN_BATCHES:
+                oldest = batches.pop(next(iter(batches)))
+                yield from oldest.drained(stop)
+            batches[key] = _Batch(system, refresh_steps)
+        batch = batches[key]
+        while batch.is_full and not stop.is_set():
+            yield from batch.advance()
+        batch.load(_Job(index, system, begin))
+    for batch in batches.values():
+        yield from batch.drained(stop)
+
+
+def _group(system: System) -> Any:
+    """What scenarios must share to go abreast."""
+    laws = tuple(sorted((a.__qualname__, b.__qualname__) for a, b in system.laws.items()))
+    # the batch keeps the table alive, so its identity is not used again
+    return (
+        laws,
+        system.vehicle.mass.shape,
+        system.block,
+        system.frame_steps,
+        system.drive.shape[1],
+        id(system.geometry.table),
+    )
+
+
+@dataclass
+class _Job:
+    index: int
+    system: System
+    begin: float
+    march_s: float = 0.0
+
+
+class _Batch:
+    """Lanes that advance together."""
+
+    def __init__(self, system: System, refresh_steps: int) -> None:
+        lanes = LOCKSTEP.lanes
+        self.refresh_steps = refresh_steps
+        self.kernel = system.kernel(LOCKSTEP)
+        self.geometry = system.geometry
+        self.idle = system.start.copy()
+        self.idle[state.ON_TRACK] = 0.0
+        self.state = np.repeat(self.idle, lanes, axis=1)
+        self.constants = np.repeat(system.constants, lanes, axis=1)
+        self.jobs: list[_Job | None] = [None] * lanes
+        self.slot = 0  # rows of the drive kept for each lane
+        self.drive = np.zeros((2, system.drive.shape[1]))  # the last two rows stay at rest
+        self.first = np.zeros(lanes, dtype=np.int64)
+        self.stride = np.zeros(lanes, dtype=np.int64)
+        self.done = np.zeros(lanes, dtype=np.int64)
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no lane is free."""
+        return None not in self.jobs
+
+    def load(self, job: _Job) -> None:
+        """Give a free lane a scenario."""
+        lane = self.jobs.index(None)
+        system = job.system
+        rows = len(system.drive)
+        if rows > self.slot:
+            self._widen(rows)
+        place = lane * self.slot
+        self.drive[place : place + rows] = system.drive
+        self.first[lane], self.stride[lane], self.done[lane] = place, 1, 0
+        self.state[:, lane] = system.start[:, 0]
+        self.constants[:, lane] = system.constants[:, 0]
+        self.jobs[lane] = job
+
+    def _widen(self, rows: int) -> None:
+        """Make room for a longer motion."""
+        lanes = len(self.jobs)
+        wider = np.zeros((lanes * rows + 2, self.drive.shape[1]))
+        for lane, job in enumerate(self.jobs):
+            old, new = lane * self.slot, lane * rows
+            wider[new : new + self.slot] = self.drive[old : old + self.slot]
+            self.first[lane] = new + self.done[lane] if job else lanes * rows
+        self.slot, self.drive = rows, wider
+
+    def advance(self) -> list[tuple[int, Row]]:
+        """Run until a lane ends, or a while; the rows of what has ended."""
+        active = [lane for lane, job in enumerate(self.jobs) if job is not None]
+        left = [self._job(lane).system.frames - int(self.done[lane]) for lane in active]
+        frames = min(CHUNK, *left) if left else 0
+        begin = time.perf_counter()
+        self.kernel.call(
+            self.state,
+            self.constants,
+            self.geometry,
+            self.drive,
+            self.first,
+            self.stride,
+            self.done,
+            frames,
+            len(self.jobs),
+            self.refresh_steps,
+        )
+        share = (time.perf_counter() - begin) / max(len(active), 1)
+        self.first += frames * self.stride
+        self.done += frames
+        rows = []
+        for lane in active:
+            job = self._job(lane)
+            job.march_s += share
+            diverged = self.state[state.DIVERGED, lane] > 0.0
+            if diverged or self.done[lane] >= job.system.frames:
+                rows.append((job.index, self._row(job, lane)))
+                self._release(lane)
+        return rows
+
+    def drained(self, stop: threading.Event) -> Iterator[tuple[int, Row]]:
+        """Run all lanes to their ends."""
+        while any(job is not None for job in self.jobs) and not stop.is_set():
+            yield from self.advance()
+
+    def _job(self, lane: int) -> _Job:
+        job = self.jobs[lane]
+        assert job is not None  # asked of active lanes only
+        return job
+
+    def _row(self, job: _Job, lane: int) -> Row:
+        end = self.state[:, lane : lane + 1].copy()
+        system = job.system
+        return assess(
+            Response(
+                system=system,
+                end=end,
+                frames=np.empty((int(self.done[lane]) + 1, 0)),
+                audit=audit(system.start, end, system.constants),
+                wall_s=time.perf_counter() - job.begin,
+                march_s=job.march_s,
+            )
+        )
+
+    def _release(self, lane: int) -> None:
+        self.jobs[lane] = None
+        self.state[:, lane] = self.idle[:, 0]
+        self.first[lane], self.stride[lane] = len(self.jobs) * self.slot, 0
