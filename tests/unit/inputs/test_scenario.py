@@ -68,7 +68,7 @@ def test_solver_defaults():
         "phi": 0.5,
         "psi": 0.5,
         "history_step": 1e-3,
-        "newton_tolerance": 1e-6,
+        "newton_tolerance": 1e-4,
         "newton_max_iterations": 20,
         "lateral_force_filter": 20.0,
     }
