@@ -38,7 +38,7 @@ docs: $(VENV)/.ready-docs
 	@echo "docs/_build/html/index.html"
 
 bench: $(VENV)/.ready-bench
-	$(BIN)/python -m railquake.bench
+	$(BIN)/railquake bench
 
 # One stamp per set of packages.  Each holds when the interpreter and both lists are older than it.
 $(VENV)/.ready-run:   EXTRAS :=

@@ -1,6 +1,6 @@
 """How fast it is: one table, measured in one run, beside OpenSees.
 
-    python -m railquake.bench [--json]
+    railquake bench [--json]
 
 Each rate is the best of several repetitions on one core.  The coupled rates are for a BART car on
 a Berkeley pier under a strong synthetic motion, all measures and the energy audit on.
@@ -8,8 +8,6 @@ a Berkeley pier under a strong synthetic motion, all measures and the energy aud
 
 from __future__ import annotations
 
-import argparse
-import json
 import os
 import platform
 import statistics
@@ -17,13 +15,14 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.assessment import versions
 from railquake.inputs.scenario import scenario
-from railquake.physics import state
+from railquake.lockstep import simulate_many
+from railquake.physics.kernel import LOCKSTEP
 from railquake.simulation import simulate
 
 if TYPE_CHECKING:
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
     from railquake.inputs.support import Pier
 
-__all__ = ["main", "opensees_pier", "run_bench"]
+__all__ = ["opensees_pier", "print_bench", "run_bench"]
 
 MOTION = {"seed": 18, "duration": "20 s", "pga": "1.0 g", "ground_frequency": "1.8 Hz"}
 OPENSEES_STEPS = 20_000
@@ -50,6 +49,21 @@ def _rate(case: Scenario, repeats: int) -> tuple[float, float]:
         response = simulate(case)
         rates.append(response.steps / response.march_s)
     return max(rates), statistics.median(rates)
+
+
+def _lockstep_rate(threads: int, repeats: int, motion: dict[str, Any]) -> float:
+    """Best steps per second of a batch, assembly included: four scenarios to a lane."""
+    count = 4 * LOCKSTEP.lanes * threads
+    cases = [
+        _case(motion={**motion, "seed": 18 + k}, scale=0.6 + 0.8 * k / count) for k in range(count)
+    ]
+    list(simulate_many(cases[:1], threads=1))
+    rates = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        steps = sum(row["steps"] for _, row in simulate_many(cases, threads=threads))
+        rates.append(steps / (time.perf_counter() - begin))
+    return max(rates)
 
 
 def opensees_pier(
@@ -218,10 +232,16 @@ def run_bench(*, repeats: int = 5, seconds: bool = True, short: bool = False) ->
     elastic, _ = _rate(_case(motion=motion, hinge="elastic"), repeats)
     grid_motion = {"duration": "6 s"}
     grid, _ = _rate(_case(motion=grid_motion, contact="grid"), max(1, repeats // 2))
+    lockstep = _lockstep_rate(1, max(1, repeats // 2), motion)
+    two = _lockstep_rate(2, max(1, repeats // 2), motion)
     opensees = _opensees_rate(max(1, repeats // 2), 500 if short else OPENSEES_STEPS)
     row: dict[str, Any] = {
         "scalar_steps_per_s": scalar,
         "scalar_median_steps_per_s": median,
+        "lockstep_steps_per_s": lockstep,
+        "lockstep_two_threads_steps_per_s": two,
+        "lockstep_over_scalar": lockstep / scalar,
+        "two_threads_over_one": two / lockstep,
         "elastic_steps_per_s": elastic,
         "grid_steps_per_s": grid,
         "opensees_pier_steps_per_s": opensees,
@@ -232,12 +252,16 @@ def run_bench(*, repeats: int = 5, seconds: bool = True, short: bool = False) ->
             row["first_result_s"] = _command_seconds(cache)
             row["warm_command_s"] = _command_seconds(cache, 3)
         row["import_s"] = _import_seconds()
-    return {**row, "state_rows": state.VEHICLE, "processor": _processor(), "versions": versions()}
+    return {**row, "processor": _processor(), "versions": versions()}
 
 
 ROWS = (
     ("scalar_steps_per_s", "coupled, Bouc-Wen, table contact, one core", "steps/s"),
     ("scalar_median_steps_per_s", "... median of the repetitions", "steps/s"),
+    ("lockstep_steps_per_s", "many abreast, Bouc-Wen, one core", "scenario-steps/s"),
+    ("lockstep_over_scalar", "... over the single run", "times"),
+    ("lockstep_two_threads_steps_per_s", "many abreast, two threads", "scenario-steps/s"),
+    ("two_threads_over_one", "... over one thread", "times"),
     ("elastic_steps_per_s", "coupled, elastic hinge", "steps/s"),
     ("grid_steps_per_s", "coupled, Bouc-Wen, grid contact", "steps/s"),
     ("opensees_pier_steps_per_s", "OpenSees, the pier alone, its own Bouc-Wen", "steps/s"),
@@ -248,24 +272,13 @@ ROWS = (
 )
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the table, or JSON."""
-    parser = argparse.ArgumentParser(prog="railquake bench", description=__doc__)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    wanted = parser.parse_args(arguments)
-    row = run_bench()
-    if wanted.json:
-        print(json.dumps(row, indent=2))
-        return 0
+def print_bench(row: dict[str, Any]) -> None:
+    """Print the table of `run_bench`."""
     print(f"{row['processor']}, Python {platform.python_version()}")
     for key, text, unit in ROWS:
         value = row.get(key)
-        shown = "not measured (pip install railquake[bench])" if value is None else f"{value:,.3g}"
-        if value is not None and value >= 1000.0:
-            shown = f"{value:,.0f}"
-        print(f"{text:52} {shown:>14} {unit if value is not None else ''}")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        if value is None:
+            print(f"{text:52} not measured (pip install railquake[bench])")
+        else:
+            shown = f"{value:,.0f}" if value >= 1000.0 else f"{value:,.3g}"
+            print(f"{text:52} {shown:>14} {unit}")

@@ -259,6 +259,21 @@ def modes(
         typer.echo(f"{k:2}  {frequency:8.4f} Hz  {label}")
 
 
+@app.command()
+def bench(as_json: Json = False) -> None:
+    """Measure how fast it is on this machine, beside OpenSees where that is installed.
+
+    Example: railquake bench --json
+    """
+    from railquake.bench import print_bench, run_bench
+
+    row = run_bench()
+    if as_json:
+        _print_json(row)
+    else:
+        print_bench(row)
+
+
 Picture = Annotated[Path | None, typer.Option("--picture", help="Picture (PNG) to write.")]
 
 

@@ -129,6 +129,7 @@ class System:
         if target.lanes == 1:
             # what a patch does not need is not computed; many abreast must do it all the same
             laws[march.press] = march.press_closed
+            laws[march.comes_near] = march.may_be_near
             return bind(march.march, target, laws, sizes)
         laws[elementary.exponential] = elementary.exponential_polynomial
         laws[elementary.power] = elementary.power_polynomial

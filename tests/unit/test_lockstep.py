@@ -1,0 +1,138 @@
+"""Many runs in lockstep: each gives its own row, whatever runs beside it."""
+
+import numpy as np
+import pytest
+
+import railquake as rq
+from railquake.assembly.system import System
+from railquake.physics.kernel import LOCKSTEP
+
+SHORT = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
+TIMINGS = ("wall_s", "steps_per_s", "versions")
+
+
+def mixed():
+    """Eleven scenarios of all kinds: more than a batch has lanes."""
+    strong = {**SHORT, "pga": "1.5 g", "duration": "3 s", "dt": "0.004 s"}
+    return [
+        rq.scenario(synthetic=SHORT),
+        rq.scenario(synthetic=strong),
+        rq.scenario(synthetic=SHORT, hinge="elastic"),
+        rq.scenario(synthetic={**strong, "seed": 4}, speed="0.01 km/h"),
+        rq.scenario(synthetic=SHORT, coupled=False),
+        rq.scenario(synthetic=SHORT, support="at-grade"),
+        rq.scenario(synthetic={**SHORT, "seed": 5}, vehicle="bart-2023-runs"),
+        rq.scenario(synthetic={**SHORT, "duration": "1.8 s"}, speed="240 km/h"),
+        rq.scenario(synthetic=SHORT, support={"preset": "bart-berkeley", "length": "8 m"}),
+        rq.scenario(synthetic=SHORT, scale=2.0),
+        rq.scenario(synthetic=SHORT, scale=-1.0, hinge="elastic"),
+    ]
+
+
+def untimed(row):
+    return {key: value for key, value in row.items() if key not in TIMINGS}
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return dict(rq.simulate_many(mixed(), threads=2))
+
+
+def test_every_scenario_has_one_row(rows):
+    assert sorted(rows) == list(range(11))
+    assert {row["status"] for row in rows.values()} <= {"safe", "onset", "derailed"}
+
+
+def test_a_row_does_not_depend_on_its_neighbours(rows):
+    backwards = dict(rq.simulate_many(mixed()[::-1], threads=1))
+    for index, row in rows.items():
+        assert untimed(backwards[10 - index]) == untimed(row)
+    alone = dict(rq.simulate_many(mixed()[1:2], threads=1))
+    assert untimed(alone[0]) == untimed(rows[1])
+
+
+def test_rows_are_those_of_single_runs(rows):
+    for index, case in enumerate(mixed()):
+        single = rq.assess(rq.simulate(case))
+        assert set(single) == set(rows[index])
+        assert single["status"] == rows[index]["status"]
+        assert single["steps"] == rows[index]["steps"]
+        for key in ("pbd_m", "pbv_m_s", "pba_m_s2", "hinge_rotation_peak_rad"):
+            assert rows[index][key] == pytest.approx(single[key], rel=3e-3), (index, key)
+        assert rows[index]["uplift_ratio"] == pytest.approx(single["uplift_ratio"], rel=0.02)
+        for key in ("flange_contact_first_s", "uplift_first_s"):
+            assert rows[index][key] == pytest.approx(single[key], abs=2e-3), (index, key)
+        assert abs(rows[index]["energy_residual"]) < 1e-3
+
+
+def test_an_impossible_scenario_is_a_row_and_the_others_finish():
+    cases = mixed()[:2]
+    cases.insert(1, cases[0].with_changes({"solver.dt": "4.9e-4 s"}))
+    rows = dict(rq.simulate_many(cases, threads=1))
+    assert rows[1]["status"] == "failed"
+    assert "solver.dt" in rows[1]["error"]
+    assert rows[0]["status"] == rows[2]["status"] == "safe"
+
+
+def test_the_grid_method_is_run_by_the_single_engine():
+    case = rq.scenario(synthetic={**SHORT, "duration": "1.7 s", "dt": "0.01 s"}, contact="grid")
+    rows = dict(rq.simulate_many([case], threads=1))
+    assert untimed(rows[0]) == untimed(rq.assess(rq.simulate(case)))
+
+
+def test_scenarios_are_drawn_as_they_are_needed_and_leaving_early_is_fine():
+    drawn = []
+
+    def endless():
+        while True:
+            drawn.append(1)
+            yield rq.scenario(synthetic=SHORT)
+
+    results = rq.simulate_many(endless(), threads=2)
+    assert next(results)[1]["status"] == "safe"
+    results.close()
+    assert len(drawn) < 200
+
+
+@pytest.mark.parametrize("wrong", [{"threads": 0}, {"refresh_steps": 0}])
+def test_numbers_below_one_are_refused(wrong):
+    with pytest.raises(rq.InputError, match="at least 1"):
+        rq.simulate_many([], **wrong)
+
+
+def test_an_error_in_the_callers_scenarios_reaches_the_caller():
+    def broken():
+        yield rq.scenario(synthetic=SHORT)
+        raise ValueError("mine")
+
+    with pytest.raises(ValueError, match="mine"):
+        list(rq.simulate_many(broken(), threads=1))
+
+
+def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
+    """The speed rests on it, and a stray branch in a stage silently loses it."""
+    import llvmlite.binding
+
+    features = llvmlite.binding.get_host_cpu_features()
+    register = "%zmm" if features.get("avx512f") else "%ymm" if features.get("avx2") else None
+    if register is None:
+        pytest.skip("no wide vectors on this machine")
+    from railquake.physics import kernel
+
+    monkeypatch.setenv("RAILQUAKE_CACHE_DIR", str(tmp_path))  # compile here and now
+    kernel._bind_cached.cache_clear()
+    system: System = rq.assemble(rq.scenario(synthetic=SHORT))
+    try:
+        made = system.kernel(LOCKSTEP).call
+        lanes = np.zeros(LOCKSTEP.lanes, dtype=np.int64)
+        made(
+            np.repeat(system.start, LOCKSTEP.lanes, axis=1),
+            np.repeat(system.constants, LOCKSTEP.lanes, axis=1),
+            system.geometry, system.drive, lanes, lanes, lanes, 0, LOCKSTEP.lanes, 10,
+        )  # fmt: skip
+        code = next(iter(made.inspect_asm().values()))
+    finally:
+        kernel._bind_cached.cache_clear()
+    packed = sum(register in line and "pd" in line.split("\t")[1] for line in code.splitlines()
+                 if line.startswith("\t") and len(line.split("\t")) > 1)  # fmt: skip
+    assert packed > 1500
