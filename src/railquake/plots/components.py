@@ -62,7 +62,7 @@ def write_motion_picture(motion: GroundMotion, path: Path) -> Path:
     from railquake.inputs.motion import response_spectrum
     from railquake.inputs.motion.motion import cumulative_trapezoid
 
-    made, axes = figure(8.5, 7.5, 4)
+    made, axes = figure(8.5, 9.0, 4)
     velocity = motion.velocity()
     for ax, values, text in (
         (axes[0], motion.acceleration, "acceleration, m/s²"),
@@ -71,7 +71,7 @@ def write_motion_picture(motion: GroundMotion, path: Path) -> Path:
     ):
         ax.plot(motion.time, values, color=BLUE, linewidth=0.7)
         ax.set_xlim(0.0, motion.time[-1])
-        label(ax, "time, s", text)
+        label(ax, "time, s" if ax is axes[2] else "", text)
     periods = np.geomspace(max(0.03, 2.0 * motion.dt), 5.0, 150)
     axes[3].loglog(periods, response_spectrum(motion, periods).psa / 9.80665, color=RED)
     label(axes[3], "period, s", "pseudo-acc., g", "Response spectrum, 5 % damping")

@@ -130,7 +130,7 @@ def _histories(response: Response, path: Path) -> Path:
 
 
 def _wheel_loads(response: Response, path: Path) -> Path:
-    made, axes = figure(8.5, 6.5, 3, sharex=True)
+    made, axes = figure(8.5, 7.0, 3, sharex=True)
     static = response.system.static_wheel_load
     for side, colour in (("left", BLUE), ("right", ORANGE)):
         _plot(
@@ -187,7 +187,7 @@ def _wheel_loads(response: Response, path: Path) -> Path:
 
 
 def _relative_roll(response: Response, path: Path) -> Path:
-    made, ax = figure(8.5, 4.2)
+    made, ax = figure(8.5, 4.2, right=0.65)
     onset = np.degrees(response.reference_roll)
     roll = np.degrees(response.channel("relative_roll_rad"))
     ax.plot(*thinned(response.times, roll), color=BLUE, linewidth=1.0)

@@ -95,7 +95,7 @@ def _draw_car(ax: Axes, response: Response, frame: int) -> None:
     ax.plot(deck * np.cos(tilt), deck * np.sin(tilt) + 0.02, color="black", linewidth=2.0)
     ax.set_aspect("equal")
     ax.invert_yaxis()
-    label(ax, "y, m", "z, m", "Car on the track (boxes are sketches; +: c.g.)")
+    label(ax, "y, m", "z, m", "Car (boxes: sketch, +: c.g.)")
 
 
 def _draw_contact(ax: Axes, response: Response, frame: int, side: str) -> None:

@@ -21,19 +21,32 @@ BLUE, ORANGE, GREEN, RED, PURPLE, GREY = (
 COLUMNS = 1500  # a line is thinned to its extremes in so many columns
 
 
-def figure(width: float, height: float, rows: int = 1, columns: int = 1, **options: Any) -> Any:
-    """A figure and its axes, laid out without overlaps."""
+def figure(
+    width: float,
+    height: float,
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    right: float = 0.15,
+    wspace: float = 0.25,
+    **options: Any,
+) -> Any:
+    """A figure and its axes, with fixed margins: to find them takes longer than to draw.
+
+    ``right`` is the right margin in inches, wider where an axis or a colour bar stands there.
+    """
     from matplotlib.figure import Figure
 
     made: Figure = Figure(figsize=(width, height), dpi=110)
-    if columns == 1 and rows > 1:
-        # a plain stack: its margins are known, and finding them takes longer than drawing
-        made.subplots_adjust(
-            0.98 / width, 0.5 / height, 1.0 - 0.15 / width, 1.0 - 0.6 / height, hspace=0.22
-        )
-    else:
-        made.set_layout_engine("constrained")
     axes = made.subplots(rows, columns, **options)
+    made.subplots_adjust(
+        left=(0.98 if rows > 1 else 0.7) / width,
+        bottom=0.5 / height,
+        right=1.0 - right / width,
+        top=1.0 - 0.6 / height,
+        hspace=0.22 if columns == 1 and options.get("sharex") else 0.35,
+        wspace=wspace,
+    )
     for ax in np.ravel(axes):
         ax.spines[["top", "right"]].set_visible(False)
         ax.grid(visible=True, color="#e5e5e5", linewidth=0.6)
