@@ -1,0 +1,66 @@
+"""The creep laws beside each other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from railquake.physics import creep
+from railquake.plots.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    blank,
+    dress,
+    heading,
+    label,
+    legend,
+    save,
+)
+
+__all__ = ["write_creep_picture"]
+
+
+def write_creep_picture(slope: float, limit: float, path: Path) -> Path:
+    """Draw the four laws: force over mu N against the lateral creepage, without spin.
+
+    Parameters
+    ----------
+    slope : float
+        f22 = G a b C22, N.
+    limit : float
+        mu N, N.
+    path : Path
+        PNG to write.
+
+    Returns
+    -------
+    Path
+    """
+    made = blank(7.2, 4.9)
+    ax = dress(made.add_axes((0.095, 0.105, 0.88, 0.72)))
+    creepage = np.linspace(0.0, 5.0 * limit / slope, 400)
+    for name, law, colour, dashes in (
+        ("Coulomb cap", creep.reduction_coulomb, GREY, "-"),
+        ("Shen-Hedrick-Elkins", creep.reduction_shen_hedrick_elkins, BLUE, "-"),
+        ("Carter", creep.reduction_carter, ORANGE, "--"),
+        ("Polach", creep.reduction_polach, GREEN, "-."),
+    ):
+        force = [slope * xi * law(slope * xi, limit) / limit for xi in creepage]
+        ax.plot(1e3 * creepage, force, color=colour, linestyle=dashes, linewidth=1.6, label=name)
+    start = np.array([0.0, 1.15 * limit / slope])
+    ax.plot(1e3 * start, slope * start / limit, color=BLACK, linewidth=0.8, linestyle=":",
+            label="Kalker, linear")  # fmt: skip
+    ax.set_xlim(0.0, 1e3 * creepage[-1])
+    ax.set_ylim(0.0, 1.18)
+    label(ax, "lateral creepage, 10⁻³", "force / (friction × load), 1")
+    legend(ax)
+    heading(
+        made,
+        "Lateral creep force without spin, four laws",
+        f"f₂₂ = {1e-6 * slope:.4g} MN, friction × load = {1e-3 * limit:.4g} kN",
+    )
+    return save(made, path)
