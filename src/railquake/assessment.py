@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,11 @@ __all__ = ["assess", "versions"]
 
 def versions() -> dict[str, str]:
     """Versions of all that decides the numbers."""
+    return dict(_versions())
+
+
+@cache
+def _versions() -> dict[str, str]:
     found = {"python": platform.python_version()}
     for package in ("railquake", "numpy", "scipy", "numba"):
         try:
