@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import json
+import gc
+import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -24,9 +25,14 @@ app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain help is quicker, and its paragraphs are filled
     help="How safely a train runs over a bridge in an earthquake.",
 )
-probe_app = typer.Typer(no_args_is_help=True, help="One component of the model by itself.")
+probe_app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="One component of the model by itself.",
+)
 app.add_typer(probe_app, name="probe")
 
 # The built-in run: a synthetic motion, so that no file is needed.
@@ -37,10 +43,17 @@ USAGE_ERROR: type[Exception] = next(
     kind for kind in typer.BadParameter.__mro__ if kind.__name__ == "ClickException"
 )
 
-Case = Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)]
+STOPPED = 130  # exit status after Ctrl-C
+
+Case = Annotated[Path, typer.Argument(metavar="CASE.toml", help="Case file.", show_default=False)]
 Changes = Annotated[
     list[str] | None,
-    typer.Option("--set", help="Change a value: --set motion.scale=1.5; may be repeated."),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a value, with its unit: --set motion.scale=1.5 --set vehicle.speed='80 km/h'; "
+        "files start from the case file's folder.",
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
@@ -52,7 +65,10 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
+@app.callback(
+    epilog="Exit status: 0 when the command did its work (a derailment is a result), 2 after a "
+    "wrong input, 130 when stopped."
+)
 def _root(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
@@ -63,7 +79,10 @@ def _root(
 
 @app.command()
 def demo(out: Out = Path("demo-out"), as_json: Json = False) -> None:
-    """Run the built-in case: a BART car on a Berkeley pier under a synthetic earthquake.
+    """Run a built-in case: car, pier and synthetic earthquake.
+
+    A BART car at 80 km/h on a Berkeley pier; needs no file.  Wheels touch with their flanges and
+    lift off; see the pictures.
 
     Example: railquake demo --out demo-out
     """
@@ -74,10 +93,12 @@ def demo(out: Out = Path("demo-out"), as_json: Json = False) -> None:
 
 @app.command()
 def run(case: Case, out: Out, changes: Changes = None, as_json: Json = False) -> None:
-    """Run a case and write summary.json, history.nc, events.csv, case.toml and pictures.
+    """Run a case; write its numbers, histories and pictures.
 
-    Files of a former run in the folder are replaced, other files left alone.  A derailment is a
-    result, not an error.
+    The folder gets summary.json, history.nc, events.csv, case.toml and pictures.  Files of a
+    former run in it are replaced, other files left alone.  All are written under a temporary
+    name and moved when the run is complete.  A derailment, and a run that diverged, is a
+    result and not an error: the status says so.
 
     Example: railquake run case.toml --out result --set motion.scale=1.5
     """
@@ -95,7 +116,7 @@ def _run(scenario: Scenario, out: Path, as_json: bool) -> None:
         _print_json(row)
         return
     _print_row(row)
-    typer.echo(f"pictures and numbers: {out}")
+    typer.echo(f"numbers and pictures     {out.resolve()}")
 
 
 def _simulate(scenario: Scenario) -> Response:
@@ -135,6 +156,8 @@ def _progress() -> Iterator[tuple[Callable[[int, int], None] | None, Callable[[s
 def _print_row(row: dict[str, Any]) -> None:
     """The few numbers that matter."""
     how = f" ({row['derailment_mode']})" if row["derailed"] else ""
+    if row["status"] in ("diverged", "not converged"):
+        how = ": DO NOT USE THESE NUMBERS; take a smaller solver.dt"
     typer.echo(f"status                   {row['status']}{how}")
     for name, key, factor, unit in (
         ("peak ground acceleration", "pga_m_s2", 1.0 / 9.80665, "g"),
@@ -147,7 +170,8 @@ def _print_row(row: dict[str, Any]) -> None:
         ("time off the rail", "off_rail_time_s", 1.0, "s"),
         ("energy residual", "energy_residual", 1.0, "of what is dissipated"),
     ):
-        typer.echo(f"{name:24} {factor * row[key]:.4g} {unit}")
+        value = row[key]
+        typer.echo(f"{name:24} {'-' if value is None else f'{factor * value:.4g} {unit}'}")
     rate = 1e-6 * row["steps_per_s"]
     typer.echo(f"{'steps':24} {row['steps']} at {rate:.2f} million a second")
 
@@ -157,7 +181,9 @@ def presets(
     name: Annotated[str | None, typer.Argument(help="Preset to print.")] = None,
     as_json: Json = False,
 ) -> None:
-    """List the built-in parameter sets, or print one with its source and note.
+    """List the built-in parameter sets, or print one.
+
+    Each is printed as its TOML file, with its source and how far it can be trusted.
 
     Example: railquake presets bart-berkeley
     """
@@ -182,10 +208,17 @@ def presets(
         names = sorted({preset.name for preset in known})
         raise InputError(f'no preset is called "{name}"; {did_you_mean(name, names)}')
     if as_json:
-        _print_json([{**vars(p), "path": None, "toml": p.path.read_text()} for p in found])
+        facts = ("kind", "name", "summary", "source", "note")
+        _print_json(
+            [{**{k: getattr(p, k) for k in facts}, "toml": _preset_text(p.path)} for p in found]
+        )
         return
     for preset in found:
-        typer.echo(f"# [{preset.kind}]\n{preset.path.read_text()}")
+        typer.echo(f'# [{preset.kind}] preset = "{preset.name}"\n{_preset_text(preset.path)}')
+
+
+def _preset_text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
 
 
 @app.command()
@@ -202,13 +235,19 @@ def check(case: Case, changes: Changes = None, as_json: Json = False) -> None:
     warnings = list(system.ground.baseline_check())
     vertical = scenario.vertical_motion()
     if vertical is not None:
-        warnings += vertical.baseline_check()
+        warnings += [f"vertical: {text}" for text in vertical.baseline_check()]
+    support = scenario.support
     facts = {
         "ok": True,
         "vehicle": scenario.vehicle.name,
-        "support": scenario.support.name if hasattr(scenario.support, "name") else None,
-        "kind": scenario.support.kind,
+        "speed_m_s": scenario.vehicle.speed,
+        "support": getattr(support, "name", None),
+        "kind": support.kind,
+        "hinge": getattr(support, "hinge", None),
+        "coupled": getattr(support, "coupled", None),
         "wheelrail": scenario.wheelrail.name,
+        "contact": scenario.solver.contact,
+        "motion": system.ground.name,
         "pga_m_s2": system.ground.pga,
         "pgv_m_s": system.ground.pgv,
         "duration_s": system.ground.duration,
@@ -221,21 +260,32 @@ def check(case: Case, changes: Changes = None, as_json: Json = False) -> None:
     if as_json:
         _print_json(facts)
         return
+    _print_facts({key: value for key, value in facts.items() if key != "ok"})
+    typer.echo("the case can be run")
+
+
+def _print_facts(facts: dict[str, Any]) -> None:
+    """A line for each; lists, such as warnings, a line for each item."""
     for key, value in facts.items():
-        if key not in ("ok", "warnings"):
-            typer.echo(f"{key:14} {value:.6g}" if isinstance(value, float) else f"{key:14} {value}")
-    for warning in warnings:
-        typer.echo(f"warning: {warning}")
-    typer.echo("fine")
+        if isinstance(value, list):
+            for text in value:
+                typer.echo(f"{key.removesuffix('s')}: {text}")
+        elif value is not None:
+            shown = f"{value:.6g}" if isinstance(value, float) else value
+            typer.echo(f"{key:22} {shown}")
 
 
 @app.command()
 def modes(
     vehicle: Annotated[str, typer.Argument(help="Vehicle preset or file.")],
     as_json: Json = False,
-    out: Annotated[Path | None, typer.Option("--out", help="Picture (PNG) to write.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "--picture", help="Picture (PNG) of the shapes.")
+    ] = None,
 ) -> None:
-    """Natural frequencies of a vehicle with its wheelset fixed (the paper's Table 1, Figure 6).
+    """Natural modes of a vehicle with its wheelset fixed.
+
+    Frequencies, names and shapes; for bart they are the paper's Table 1 and Figure 6.
 
     Example: railquake modes bart --out modes.png
     """
@@ -285,15 +335,19 @@ def probe_hinge(
     ] = None,
     out: Annotated[Path | None, typer.Option(help="CSV to write.")] = None,
     changes: Annotated[
-        list[str] | None, typer.Option("--set", help="Change a parameter: --set n=1.2")
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a parameter: --set n=1.2"),
     ] = None,
-    elastic: Annotated[bool, typer.Option(help="The elastic hinge instead.")] = False,
+    hinge: Annotated[str, typer.Option(help="bouc-wen or elastic.")] = "bouc-wen",
     picture: Picture = None,
     as_json: Json = False,
 ) -> None:
-    """Drive the hinge along a path of rotations; without --path, cycles of growing amplitude.
+    """Drive the hinge along a path of rotations.
 
-    Example: railquake probe hinge --preset bart-berkeley --path x.csv --out m.csv --set m=1.0
+    Without --path, cycles of growing amplitude.  Writes the columns x, moment, z, damage (rad, N
+    m, rad, 1), to standard output without --out.
+
+    Example: railquake probe hinge --path x.csv --out m.csv --set n=1.2
     """
     import numpy as np
 
@@ -303,11 +357,15 @@ def probe_hinge(
     from railquake.inputs.support import Pier
     from railquake.probe import run_hinge
 
+    if hinge not in ("bouc-wen", "elastic"):
+        raise InputError(f'--hinge: must be bouc-wen or elastic, found "{hinge}"')
     table: dict[str, Any] = {}
     for text in changes or ():
         key, value = split_override(text)
         table[key.removeprefix("bouc_wen.")] = value
     section = resolved_section("support", {"preset": preset, "bouc_wen": table})
+    if section.get("kind", "pier") != "pier":
+        raise InputError(f'--preset: "{preset}" is no pier, so it has no hinge')
     pier = validated(Pier, section, "support")
     if path is None:
         largest = pier.bouc_wen.xu
@@ -318,7 +376,7 @@ def probe_hinge(
         x = np.concatenate([np.linspace(a, b, 200)[1:] for a, b in pairwise(turns)])
     else:
         x = _read_column(path, "x")
-    rows = run_hinge(pier.bouc_wen, x, elastic=elastic)
+    rows = run_hinge(pier.bouc_wen, x, elastic=hinge == "elastic")
     if picture is not None:
         from railquake.plots import write_hinge_picture
 
@@ -344,14 +402,22 @@ def probe_motion(
     channel: Annotated[
         str | None, typer.Option(help="Channel of a file with several, by number or name.")
     ] = None,
-    units: Annotated[str | None, typer.Option(help="Units, where the file does not say.")] = None,
+    units: Annotated[
+        str | None, typer.Option(help="Unit, such as g, where the file does not say.")
+    ] = None,
     dt: Annotated[float | None, typer.Option(help="Time step, s, where it does not say.")] = None,
-    scale: Annotated[float, typer.Option(help="Factor.")] = 1.0,
+    scale: Annotated[float, typer.Option(help="Factor; a negative one mirrors.")] = 1.0,
     allow_high_pga: Annotated[bool, typer.Option(help="Take a peak above 3 g as it is.")] = False,
-    picture: Picture = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", "--out", help="Picture (PNG): histories and response spectrum."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Read a record and measure it.
+
+    PGA, PGV, Arias intensity, duration, and a check of the baseline.  Where a file holds several
+    channels, the message lists them.
 
     Example: railquake probe motion RSN181.AT2 --picture motion.png
     """
@@ -359,8 +425,9 @@ def probe_motion(
 
     chosen = int(channel) if channel is not None and channel.isdigit() else channel
     motion = read_motion(file, channel=chosen, units=units, dt=dt, allow_high_pga=allow_high_pga)
-    if scale != 1.0:
-        motion = motion.scaled(abs(scale))
+    motion = motion.scaled(abs(scale))
+    if scale < 0.0:
+        motion = motion.mirrored()
     warnings = list(motion.baseline_check())
     if picture is not None:
         from railquake.plots import write_motion_picture
@@ -374,18 +441,14 @@ def probe_motion(
         "pga_m_s2": motion.pga,
         "pgv_m_s": motion.pgv,
         "arias_intensity_m_s": motion.arias_intensity,
+        "significant_duration_s": motion.significant_duration(),
         "notes": list(motion.notes),
         "warnings": warnings,
     }
     if as_json:
         _print_json(facts)
         return
-    for key, value in facts.items():
-        if isinstance(value, list):
-            for text in value:
-                typer.echo(f"{key[:-1]}: {text}")
-        else:
-            typer.echo(f"{key:20} {value:.6g}" if isinstance(value, float) else f"{key:20} {value}")
+    _print_facts(facts)
 
 
 @probe_app.command("contact")
@@ -398,17 +461,19 @@ def probe_contact(
     gauge: Annotated[float | None, typer.Option(help="Gauge, m.")] = None,
     young: Annotated[float | None, typer.Option(help="Young's modulus, Pa.")] = None,
     poisson: Annotated[float | None, typer.Option(help="Poisson's ratio.")] = None,
+    picture: Picture = None,
     as_json: Json = False,
 ) -> None:
-    """Contact of one wheelset that stands still: a row for each touching patch.
+    """Contact of one wheelset that stands still.
 
-    Angles are from the plane of the track, positive where the contact plane rises towards the
-    middle of the track; y to the right and z down from the midpoint of the rail crowns.
+    A row for each touching patch: y to the right and z down from the midpoint of the rail crowns;
+    the angle of the contact plane from the plane of the track, positive where it falls towards
+    the middle of the track as on a flange; semi-axes a along the rolling direction, b across.
 
-    Example: railquake probe contact --preset s1002-60e1 --shift 0.005 --load 50e3
+    Example: railquake probe contact --preset s1002-60e1 --shift 0.005
     """
     from railquake.inputs.wheelrail import WheelRail
-    from railquake.probe import standing_contact
+    from railquake.probe import standing_wheelset
 
     if not load > 0.0 or load == float("inf"):
         raise InputError(f"--load: must be positive and finite, found {load:g}")
@@ -425,13 +490,17 @@ def probe_contact(
         )
         if value is not None
     }
-    patches = standing_contact(WheelRail.from_preset(preset, overrides), shift, load)
-    rows = [vars(patch) for patch in patches]
+    pair = WheelRail.from_preset(preset, overrides)
+    standing = standing_wheelset(pair, shift, load)
+    if picture is not None:
+        from railquake.plots.contact import write_contact_picture
+
+        _picture(picture, lambda path: write_contact_picture(pair, standing, path))
     if as_json:
-        _print_json(rows)
+        _print_json([vars(patch) for patch in standing.patches])
         return
     typer.echo("side     y, mm      z, mm   angle, rad  approach, mm  normal, kN   a, mm   b, mm")
-    for p in patches:
+    for p in standing.patches:
         typer.echo(
             f"{p.side:5} {1e3 * p.y_m:9.3f} {1e3 * p.z_m:10.4f} {p.angle_rad:11.5f} "
             f"{1e3 * p.approach_m:13.5f} {1e-3 * p.normal_n:11.3f} {1e3 * p.a_m:7.3f} "
@@ -449,7 +518,10 @@ def probe_creep(
     shear_modulus: Annotated[float, typer.Option(help="Pa.")] = 82e9,
     poisson: Annotated[float, typer.Option(help="Poisson's ratio.")] = 0.28,
     law: Annotated[str, typer.Option(help="coulomb, she, carter or polach.")] = "she",
-    picture: Picture = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", "--curve", help="Picture (PNG): force against creepage."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Lateral creep force on the wheel; it opposes the creepage.
@@ -497,7 +569,7 @@ def _read_column(path: Path, name: str) -> Any:
     import numpy as np
 
     try:
-        lines = path.read_text().splitlines()
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "is not text"
         raise InputError(f"{path}: cannot be read: {reason}") from None
@@ -545,14 +617,18 @@ def _picture(path: Path, write: Callable[[Path], Any]) -> None:
 def _write_text(path: Path, text: str) -> None:
     part = path.with_name(f".{path.name}.part")
     try:
-        part.write_text(text)
+        part.write_text(text, encoding="utf-8")
         part.replace(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def _print_json(value: Any) -> None:
-    typer.echo(json.dumps(value, indent=2))
+    from railquake.output import json_text
+
+    typer.echo(json_text(value))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -566,14 +642,32 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0; 2 after a wrong input, with one line on standard error; 130 after Ctrl-C.
+        0; 2 after a wrong input, with one line on standard error; 130 after Ctrl-C or a request
+        to terminate.
     """
+    complaints = sys.unraisablehook
 
     def stop(*_: object) -> NoReturn:
+        # what the compiler leaves half done, its destructors must not report
+        sys.unraisablehook = lambda _: None
         raise KeyboardInterrupt
 
+    former = {}
     with suppress(ValueError):  # not in the main thread
-        signal.signal(signal.SIGTERM, stop)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if signal.getsignal(number) != signal.SIG_IGN:  # as nohup asks for
+                former[number] = signal.signal(number, stop)
+    try:
+        return _status(arguments)
+    finally:
+        sys.unraisablehook = complaints
+        for number, handler in former.items():
+            signal.signal(number, handler)
+        if arguments is None:
+            gc.freeze()  # the process ends: looking for garbage once more takes half a second
+
+
+def _status(arguments: Sequence[str] | None) -> int:
     try:
         status = app(
             args=None if arguments is None else list(arguments),
@@ -583,16 +677,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         return _complain(str(error), 2)
     except (KeyboardInterrupt, typer.Abort):
-        return _complain("stopped; nothing was written", 130)
+        status = STOPPED
     except USAGE_ERROR as error:
-        return _complain(" ".join(str(error.format_message()).split()), 2)  # type: ignore[attr-defined]
+        if type(error).__name__ == "NoArgsIsHelpError":
+            typer.echo(error.ctx.get_help())  # type: ignore[attr-defined]
+            return 0
+        return _complain(_usage(error), 2)
     except BrokenPipeError:
-        sys.stderr.close()  # the reader of a pipe has left
+        # the reader of a pipe has left: nothing more can be said, not even at the interpreter's end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    if status == STOPPED:  # typer turns Ctrl-C into this
+        return _complain("stopped; nothing is half-written", STOPPED)
     return status if isinstance(status, int) else 0
 
 
+def _usage(error: Any) -> str:
+    """What was wrong with the command, on one line, and where its help is."""
+    message = " ".join(error.format_message().split())
+    context = getattr(error, "ctx", None)
+    if context is None:
+        return message
+    return f"{message.removesuffix('.')} (see {context.command_path} --help)"
+
+
 def _complain(message: str, status: int) -> int:
-    if message:
-        print(f"railquake: {message}", file=sys.stderr)
+    print(f"railquake: {message}", file=sys.stderr)
     return status

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import os
 import shutil
+import signal
 import tempfile
+import threading
+import uuid
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +22,7 @@ from railquake.errors import InputError
 if TYPE_CHECKING:
     from railquake.response import Response
 
-__all__ = ["prepare_folder", "write_run"]
+__all__ = ["json_text", "prepare_folder", "write_run"]
 
 # What a run writes; only these are replaced in a folder that is there already.
 FILES = (
@@ -25,30 +31,46 @@ FILES = (
 )  # fmt: skip
 
 
+def json_text(value: Any) -> str:
+    """JSON that every reader takes: a number that is not finite becomes null."""
+    return json.dumps(_finite(value), indent=2, allow_nan=False)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, Mapping):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return value
+
+
 def prepare_folder(folder: Path) -> None:
-    """Make sure, before a long run, that its results can be written.
+    """Make sure, before a long run, that its results can be written; nothing is left behind.
 
     Raises
     ------
     InputError
         If the folder cannot be made or written to, or is a file.
     """
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out {folder}: is a file; name a folder")
-    parent = folder if folder.exists() else folder.absolute().parent
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise InputError(f"--out {folder}: is no folder; name a folder")
+    there = folder.absolute()
+    while not os.path.lexists(there):
+        there = there.parent
     try:
-        parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=parent):
+        with tempfile.TemporaryFile(dir=there):
             pass
     except OSError as error:
-        raise InputError(f"--out {folder}: cannot be written: {error.strerror or error}") from None
+        raise InputError(f"--out {folder}: cannot be written: {_reason(error)}") from None
 
 
 def write_run(response: Response, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
     """Write everything that a run gave.
 
-    All files are written to a folder beside it first and then moved, so that an interruption
-    leaves no broken file.
+    All files are written under a temporary name first and then moved, so that an interruption
+    leaves no broken file, and no mixture of two runs.
 
     Parameters
     ----------
@@ -68,36 +90,74 @@ def write_run(response: Response, folder: Path, *, pictures: bool = True) -> dic
         If the files cannot be written.
     """
     row = assess(response)
-    folder = folder.absolute()
+    # In a folder that is there already the temporary one lies inside: its parent may be another
+    # file system, or closed to us.
+    unfinished = f".{uuid.uuid4().hex[:8]}.part"
+    above = folder if folder.is_dir() else folder.absolute().parent
+    part = above / unfinished
+    made = [parent for parent in (above, *above.parents) if not parent.exists()]
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        part = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
-    except OSError as error:
-        raise InputError(f"{folder}: cannot be written: {error.strerror or error}") from None
-    try:
-        (part / "summary.json").write_text(json.dumps(row, indent=2) + "\n")
-        (part / "case.toml").write_text(response.system.scenario.to_toml())
+        part.mkdir(parents=True)
+        (part / "case.toml").write_text(response.system.scenario.to_toml(), encoding="utf-8")
         _write_events(response, part / "events.csv")
         response.history.to_netcdf(part / "history.nc", engine="h5netcdf")
         if pictures:
             from railquake.plots import write_pictures
 
             write_pictures(response, part)
-        folder.mkdir(exist_ok=True)
-        written = {path.name for path in part.iterdir()}
-        for name in written:
-            os.replace(part / name, folder / name)
-        for name in set(FILES) - written:  # of a former run of another kind
-            (folder / name).unlink(missing_ok=True)
+        (part / "summary.json").write_text(json_text(row) + "\n", encoding="utf-8")
+        with _uninterrupted():
+            _move(part, folder)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be written: {error.strerror or error}") from None
+        raise InputError(f"{folder}: cannot be written: {_reason(error)}") from None
     finally:
-        shutil.rmtree(part, ignore_errors=True)
+        with _uninterrupted():
+            shutil.rmtree(part, ignore_errors=True)
+            for parent in made:
+                with suppress(OSError):  # it holds the results
+                    parent.rmdir()
     return row
 
 
+def _move(part: Path, folder: Path) -> None:
+    """Move what was written into its place; the summary last, as the sign that all is there."""
+    if not folder.is_dir():
+        part.rename(folder)
+        return
+    written = {path.name for path in part.iterdir()}
+    for name in set(FILES) - written:  # of a former run of another kind
+        (folder / name).unlink(missing_ok=True)
+    for name in sorted(written, key=lambda name: name == "summary.json"):
+        (part / name).replace(folder / name)
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Let Ctrl-C and the request to terminate wait until the block is done."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread is interrupted
+        return
+    arrived: list[int] = []
+    former = {
+        number: signal.signal(number, lambda number, _: arrived.append(number))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield
+    finally:
+        for number, handler in former.items():
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+        if arrived:
+            signal.raise_signal(arrived[0])
+
+
+def _reason(error: OSError) -> str:
+    """Why, on one line."""
+    return error.strerror or " ".join(str(error).split())
+
+
 def _write_events(response: Response, path: Path) -> None:
-    with open(path, "w", newline="") as file:
+    with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["event", "begin_s", "end_s"])
         for event in response.events:

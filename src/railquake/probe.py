@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import brentq
 
-from railquake.assembly.geometry import build_geometry
+from railquake.assembly.geometry import FLOOR, STEEPEST, build_geometry
 from railquake.assembly.statics import UNKNOWN_DEGRADATION
 from railquake.assembly.system import CREEP_LAWS, hinge_parameters
 from railquake.assembly.vehicle import VehicleMatrices
@@ -25,7 +25,15 @@ if TYPE_CHECKING:
     from railquake.inputs.vehicle import Vehicle
     from railquake.inputs.wheelrail import WheelRail
 
-__all__ = ["Patch", "creep_force", "mode_labels", "run_hinge", "standing_contact"]
+__all__ = [
+    "Patch",
+    "StandingWheelset",
+    "creep_force",
+    "mode_labels",
+    "run_hinge",
+    "standing_contact",
+    "standing_wheelset",
+]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -57,13 +65,16 @@ def run_hinge(hinge: BoucWenHinge, rotation: Array, *, elastic: bool = False) ->
     rows = np.empty((len(rotation), 3))
     for k, target in enumerate(rotation):
         step = float(target) - x
-        _, z_new, eps, x_max, moment, _, correction, *_ = law(
-            x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, step, 0.0, *parameters
-        )
+        try:
+            _, z_new, eps, x_max, moment, _, correction, *_ = law(
+                x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, step, 0.0, *parameters
+            )
+        except ArithmeticError:  # a number too large for a float
+            z_new = correction = math.nan
         if not abs(correction) <= max(parameters[-2], 1e-15 * abs(z_new)):
             raise InputError(
                 f"path, row {k + 1}: the hinge does not converge over a step of {step:.3g} rad; "
-                "take smaller steps"
+                "take smaller steps, in rad"
             )
         x, z = float(target), z_new
         damage = boucwen.damage_index(eps, x_max, parameters[5], parameters[6])
@@ -81,7 +92,7 @@ class Patch:
     y_m, z_m : float
         Contact point in track coordinates, right and down from the rail crowns' midpoint.
     angle_rad : float
-        Of the contact plane from the plane of the track, positive where it rises towards the
+        Of the contact plane from the plane of the track, positive where it falls towards the
         middle of the track as a flange's does.
     approach_m : float
         Normal to the contact plane.
@@ -101,8 +112,36 @@ class Patch:
     b_m: float
 
 
+@dataclass(frozen=True)
+class StandingWheelset:
+    """A wheelset that stands still on two rails.
+
+    Attributes
+    ----------
+    shift, height : float
+        Of its centre, to the right and down from the rail crowns' midpoint, m.
+    roll : float
+        rad, right side down.
+    patches : list of Patch
+        Left side first.
+    """
+
+    shift: float
+    height: float
+    roll: float
+    patches: list[Patch]
+
+
 def standing_contact(wheelrail: WheelRail, shift: float, load: float) -> list[Patch]:
-    """Contact of one wheelset that stands still, without friction.
+    """Patches of a `standing_wheelset`, left side first."""
+    return standing_wheelset(wheelrail, shift, load).patches
+
+
+def standing_wheelset(wheelrail: WheelRail, shift: float, load: float) -> StandingWheelset:
+    """Height, roll and contact of one wheelset that stands still, without friction.
+
+    Both are found such that each wheel bears the load: the height at which a side does so is
+    known for any roll, and the roll is the one at which both sides ask for the same height.
 
     Parameters
     ----------
@@ -114,8 +153,7 @@ def standing_contact(wheelrail: WheelRail, shift: float, load: float) -> list[Pa
 
     Returns
     -------
-    list of Patch
-        Left side first.
+    StandingWheelset
 
     Raises
     ------
@@ -148,7 +186,10 @@ def standing_contact(wheelrail: WheelRail, shift: float, load: float) -> list[Pa
             return total - load
 
         if excess(low + 5e-3) < 0.0:
-            raise InputError(f"a load of {load:g} N presses the wheel through the rail")
+            raise InputError(
+                f"a load of {load:g} N presses the wheel more than 5 mm into the rail at a shift "
+                f"of {1e3 * shift:g} mm; take a smaller load or shift"
+            )
         return float(brentq(excess, low, low + 5e-3, xtol=1e-15))
 
     def unevenness(psi: float) -> float:
@@ -172,6 +213,11 @@ def standing_contact(wheelrail: WheelRail, shift: float, load: float) -> list[Pa
             if normal <= 0.0:
                 continue
             _, slope, _, place, rail_z, lateral, rolling, _ = zone
+            if abs(slope) > 0.99 * STEEPEST or rail_z > 0.99 * FLOOR:  # beside the drawn rail head
+                raise InputError(
+                    f"at a shift of {1e3 * shift:g} mm the wheelset stands beside the {name} "
+                    "rail; take a smaller one"
+                )
             total = lateral + rolling
             theta = np.array([math.acos((rolling - lateral) / total)])
             m, n, _ = hertz_coefficients(theta)
@@ -179,16 +225,16 @@ def standing_contact(wheelrail: WheelRail, shift: float, load: float) -> list[Pa
             patches.append(
                 Patch(
                     name,
-                    sign * place,
-                    rail_z,
+                    float(sign * place),
+                    float(rail_z),
                     -math.atan(slope),
-                    approach,
-                    normal,
+                    float(approach),
+                    float(normal),
                     float(m[0] * size),
                     float(n[0] * size),
                 )
             )
-    return patches
+    return StandingWheelset(shift, z, psi, patches)
 
 
 def _normal(zone: tuple[float, ...], z: float, geometry: Geometry) -> tuple[float, float]:

@@ -179,25 +179,32 @@ def test_probe_creep_opposes_the_creepage(capsys):
     [
         (["--set", "vehicle.sped=3"], "vehicle.sped"),
         (["--set", "vehicle.preset=brat"], "brat"),
-        (["--set", "vehicle.speed=80"], None),
         (["--set", "vehicle.speed=80 km"], "vehicle.speed"),
         (["--set", "support.mass=3 m"], "support.mass"),
         (["--set", "support.mass=-1"], "support.mass"),
         (["--set", "support.mass=nan"], "support.mass"),
         (["--set", "support.bouc_wen.alpha=1.5"], "alpha"),
         (["--set", "solver.dt=4e-4 s", "--set", "vehicle.speed=0.1 km/h"], "solver.dt"),
-        (["--set", "motion.record=nothing.AT2"], None),
+        (["--set", "motion.record=nothing.AT2"], "nothing.AT2"),
+        (["--set", "motion.synthetic.pga=0.6 km"], "pga"),
+        (["--set", "wheelrail.preset=s1002-60e2"], "s1002-60e1"),
+        (["--set", "wheelrail.gauge=3 m"], "never touch"),
+        (["--set", "wheelrail.wheel=nothing.prw"], "nothing.prw"),
+        (["--set", "support.kind=elevated"], "elevated"),
         (["--set", "nonsense"], "nonsense"),
     ],
 )
 def test_wrong_values_are_refused_by_name(case, tmp_path, capsys, arguments, words):
-    if words is None and "80" in arguments[1]:
-        # a bare number is SI: 80 m/s is allowed
-        assert main(["check", str(case), *arguments]) == 0
-        return
     line = refused(capsys, "run", case, "--out", tmp_path / "out", *arguments)
-    assert words is None or words in line
+    assert words in line
     assert not (tmp_path / "out").exists()
+
+
+def test_bare_number_is_in_si_units(case, capsys):
+    assert main(["check", str(case), "--json", "--set", "vehicle.speed=80"]) == 0
+    assert json.loads(capsys.readouterr().out)["speed_m_s"] == 80.0
+    assert main(["check", str(case), "--json", "--set", "vehicle.speed=80 km/h"]) == 0
+    assert json.loads(capsys.readouterr().out)["speed_m_s"] == pytest.approx(80.0 / 3.6)
 
 
 @pytest.mark.parametrize(
@@ -221,22 +228,59 @@ def test_bad_records_are_refused_before_anything_is_written(shared, case, tmp_pa
         ["nosuchcommand"],
         ["modes", "brat"],
         ["presets", "brat"],
+        ["run", "case.toml"],
+        ["run", "."],
+        ["check"],
+        ["modes", "bart", "--out", "no/such/folder/modes.png"],
         ["probe", "hinge", "--set", "bogus=1"],
+        ["probe", "hinge", "--set", "n=0.5"],
+        ["probe", "hinge", "--set", "n"],
+        ["probe", "hinge", "--hinge", "plastic"],
+        ["probe", "hinge", "--preset", "bart"],
+        ["probe", "hinge", "--path", "nothere.csv"],
+        ["probe", "hinge", "--path", "."],
+        ["probe", "hinge", "--out", "no/such/folder/m.csv"],
         ["probe", "contact", "--load", "-5"],
+        ["probe", "contact", "--load", "nan"],
         ["probe", "contact", "--shift", "50"],
+        ["probe", "contact", "--shift", "nan"],
+        ["probe", "contact", "--shift", "5 mm"],
+        ["probe", "contact", "--young", "-1"],
+        ["probe", "contact", "--poisson", "0.5"],
+        ["probe", "contact", "--wheel", "nothere.prw"],
         ["probe", "creep", "--semi-axes", "6e-3", "--load", "50e3"],
         ["probe", "creep", "--semi-axes", "6e-3,5e-3", "--load", "50e3", "--law", "hertz"],
+        ["probe", "creep", "--semi-axes", "6e-3,-5e-3", "--load", "50e3"],
+        ["probe", "creep", "--semi-axes", "6e-3,5e-3", "--load", "50e3", "--mu", "inf"],
+        ["probe", "creep", "--semi-axes", "6e-3,5e-3", "--load", "50e3", "--creepage", "nan"],
         ["probe", "motion", "."],
+        ["probe", "motion", "nothere.AT2"],
     ],
 )
 def test_wrong_use_is_one_line(capsys, arguments):
     assert refused(capsys, *arguments).startswith("railquake: ")
 
 
-def test_path_with_a_value_that_is_no_number_names_the_line(tmp_path, capsys):
+@pytest.mark.parametrize("text", ["x\n0\nabc\n", "x\n0\nnan\n", "x\n0\n,1\n", "# x\nx\n1e999\n"])
+def test_path_with_a_value_that_is_no_number_names_the_line(tmp_path, capsys, text):
     path = tmp_path / "x.csv"
-    path.write_text("x\n0\nabc\n")
+    path.write_text(text)
     assert "line 3" in refused(capsys, "probe", "hinge", "--path", path)
+
+
+@pytest.mark.parametrize("content", [b"", b"x\n", b"y\n1\n", bytes(range(128, 256))])
+def test_path_without_rotations_is_refused(tmp_path, capsys, content):
+    path = tmp_path / "x.csv"
+    path.write_bytes(content)
+    assert "x.csv" in refused(capsys, "probe", "hinge", "--path", path)
+
+
+def test_path_from_a_spreadsheet_is_read(tmp_path, capsys):
+    """A byte order mark, other columns, comments and blank lines do no harm."""
+    path = tmp_path / "x.csv"
+    path.write_bytes(b"\xef\xbb\xbf# mine\r\nt, x\r\n0, 0\r\n\r\n1, 1e-4\r\n")
+    assert main(["probe", "hinge", "--path", str(path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["x"] == [0.0, 1e-4]
 
 
 def test_results_cannot_go_where_a_file_is(case, tmp_path, capsys):
@@ -245,22 +289,138 @@ def test_results_cannot_go_where_a_file_is(case, tmp_path, capsys):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_ctrl_c_leaves_nothing_behind(tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("after", [1.5, 3.0])
+def test_stopped_run_leaves_nothing_behind(tmp_path, number, after):
     case = tmp_path / "case.toml"
     case.write_text(CASE.replace("2 s", "600 s"))
-    out = tmp_path / "out"
     process = subprocess.Popen(
-        [sys.executable, "-m", "railquake", "run", str(case), "--out", str(out)],
+        [sys.executable, "-m", "railquake", "run", str(case), "--out", str(tmp_path / "a" / "out")],
+        stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         env=os.environ,
     )
-    time.sleep(4.0)
-    process.send_signal(signal.SIGINT)
-    _, printed = process.communicate(timeout=60)
+    time.sleep(after)
+    process.send_signal(number)
+    printed, complaint = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "Traceback" not in printed
+    assert printed == ""
+    lines = [line for line in complaint.splitlines() if "compiling" not in line]
+    assert lines == ["railquake: stopped; nothing is half-written"]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["case.toml"]
+
+
+def test_signals_are_given_back(capsys):
+    before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
+    assert main(["presets"]) == 0
+    assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
+
+
+def test_run_that_diverged_says_so_loudly(case, tmp_path, capsys, monkeypatch):
+    from railquake import assessment, output
+
+    def assess(response):
+        return assessment.assess(response) | {"status": "diverged", "pbd_m": float("nan")}
+
+    monkeypatch.setattr(output, "assess", assess)
+    out = tmp_path / "out"
+    at_grade = ["--set", "support.kind=at-grade"]
+    assert main(["run", str(case), "--out", str(out), *at_grade]) == 0
+    assert "DO NOT USE" in capsys.readouterr().out
+    assert json.loads((out / "summary.json").read_text())["pbd_m"] is None
+    assert main(["run", str(case), "--out", str(out), "--json", *at_grade]) == 0
+    assert json.loads(capsys.readouterr().out)["status"] == "diverged"
+
+
+def test_progress_is_shown_on_a_terminal_only(monkeypatch, capsys):
+    from railquake.cli import _progress
+
+    with _progress() as (progress, say):
+        assert progress is None
+        say("compiling")
+    assert capsys.readouterr().err == "railquake: compiling\n"
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    with _progress() as (progress, say):
+        progress(1, 2)
+        say("compiling")
+    printed = capsys.readouterr()
+    assert printed.out == "" and "railquake: compiling" in printed.err
+
+
+PROBES = [
+    ["modes", "bart", "--out"],
+    ["probe", "hinge", "--picture"],
+    ["probe", "contact", "--shift", "0.0085", "--picture"],
+    ["probe", "creep", "--semi-axes", "6e-3,5e-3", "--load", "50e3", "--curve"],
+]
+
+
+@pytest.mark.parametrize("arguments", PROBES, ids=lambda arguments: arguments[-2])
+def test_components_are_drawn(tmp_path, capsys, arguments):
+    assert main([*arguments, str(tmp_path / "picture.png"), "--json"]) == 0
+    json.loads(capsys.readouterr().out)  # nothing but JSON
+    assert [path.name for path in tmp_path.iterdir()] == ["picture.png"]
+    assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_motion_is_drawn_scaled_and_mirrored(shared, tmp_path, capsys):
+    file = shared / "records" / "formats" / "two_column_t_g.csv"
+    picture = tmp_path / "motion.png"
+    arguments = ["probe", "motion", str(file), "--scale", "-2", "--out", str(picture), "--json"]
+    assert main(arguments) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["pga_m_s2"] == pytest.approx(2.0 * 2.56231, rel=1e-5)
+    assert any("mirrored" in note for note in found["notes"])
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_channels_of_a_record_are_listed(shared, capsys):
+    file = shared / "records" / "formats" / "csmip_ce36456p.V2"
+    line = refused(capsys, "probe", "motion", file)
+    assert "1: 90 DEG" in line and "2: UP" in line
+    assert main(["probe", "motion", str(file), "--channel", "UP", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["npts"] == 3250
+
+
+COMMANDS = [
+    "demo", "run", "presets", "check", "modes", "probe hinge", "probe motion", "probe contact",
+    "probe creep",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_with_an_example(capsys, command):
+    assert main([*command.split(), "--help"]) == 0
+    text = capsys.readouterr().out
+    assert f"Example: railquake {command}" in text
+
+
+def test_without_a_command_the_commands_are_listed(capsys):
+    assert main([]) == 0
+    assert "presets" in capsys.readouterr().out
+    assert main(["probe"]) == 0
+    assert "contact" in capsys.readouterr().out
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("railquake 0.")
+
+
+def test_reader_of_a_pipe_may_leave():
+    """``railquake presets bart | head -1`` ends without a complaint."""
+    command = f"{sys.executable} -m railquake presets bart | true"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert done.stderr == ""
+
+
+def test_help_is_quick():
+    """What takes long to import is imported by the command that needs it."""
+    code = (
+        "import sys; from railquake.cli import main; main(['--help']);"
+        "print(sorted({'numba', 'scipy', 'matplotlib', 'xarray', 'pydantic', 'pint', 'numpy'}"
+        " & set(sys.modules)), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stderr.strip() == "[]"
 
 
 def test_examples_are_good_cases(capsys):
