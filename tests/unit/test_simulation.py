@@ -86,6 +86,11 @@ def test_a_step_above_the_critical_one_is_refused():
         rq.assemble(rq.scenario(synthetic=SHORT, dt="1e-3 s"))
 
 
+def test_a_step_that_would_never_end_is_refused():
+    with pytest.raises(rq.InputError, match=r"solver\.dt: 1e-15 s takes"):
+        rq.assemble(rq.scenario(synthetic=SHORT, dt="1e-15 s"))
+
+
 def test_critical_step_falls_with_the_trains_speed():
     slow, fast = (
         rq.assemble(rq.scenario(synthetic=SHORT, speed=speed)).critical_dt

@@ -159,7 +159,9 @@ def rest(
         if solved is None:
             raise InputError(
                 "no equilibrium of the standing train was found: wheel and rail may not meet "
-                "where the wheels stand; check wheelrail.running_circle, rail_centre and gauge"
+                "where the wheels stand (check wheelrail.running_circle, rail_centre, gauge and "
+                "friction), or the support may not carry it (check support.length and "
+                "track_offset)"
             )
         pier, vehicle, drift = unpack(solved)
         moment = secant * pier[1]

@@ -54,6 +54,7 @@ Laws = dict["Callable[..., Any]", "Callable[..., Any]"]
 
 GRAVITY = 9.80665  # m/s2
 UNKNOWN_DEGRADATION = statics.UNKNOWN_DEGRADATION
+MOST_STEPS = 1e10  # of a run; about an hour
 SHIFT_LIMIT = 0.127  # lateral shift that counts as derailed, m (5 in)
 ROLL_LIMIT = math.pi / 4.0  # relative roll that counts as overturned
 
@@ -158,6 +159,12 @@ def assemble(scenario: Scenario) -> System:
     """
     solver = scenario.solver
     ground = scenario.ground_motion()
+    steps = ground.duration / solver.dt
+    if steps > MOST_STEPS:
+        raise InputError(
+            f"solver.dt: {solver.dt:g} s takes {steps:.3g} steps over {ground.duration:g} s; at most "
+            f"{MOST_STEPS:.0e} are possible: take a longer step"
+        )
     drive = _drive(scenario, ground, solver.dt * _frame_steps(solver))
     drive.setflags(write=False)
     if isinstance(scenario.support, PrescribedTrack):
