@@ -1,6 +1,16 @@
 """How Sphinx builds the documentation."""
 
+import json
+import pkgutil
+import sys
 from importlib.metadata import version as installed_version
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))  # for generated.py beside this file
+
+import generated
+
+import railquake
 
 project = "railquake"
 author = "The railquake authors"
@@ -16,7 +26,8 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
 ]
-exclude_patterns = ["_build"]
+# what other pages include; the first is made by benchmarks/creep_deviation.py
+exclude_patterns = ["_build", "theory/creep-deviation.md", "reference/channels.md"]
 templates_path = ["_templates"]
 
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
@@ -33,3 +44,33 @@ napoleon_use_rtype = False
 
 html_theme = "furo"
 html_title = f"railquake {release}"
+
+
+def write_reference(app):
+    """Write the pages that follow from the package's own models, before Sphinx reads any."""
+    folder = Path(app.srcdir) / "reference"
+    folder.mkdir(exist_ok=True)
+    pages = {
+        "case-file.md": generated.case_file(),
+        "presets.md": generated.presets(),
+        "channels.md": generated.channels(),
+        "case.schema.json": json.dumps(generated.schema(), indent=2) + "\n",
+    }
+    for name, text in pages.items():
+        path = folder / name
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")  # an unchanged page is not built again
+
+
+def forget_modules_that_left(app):
+    """Remove the pages of modules that are no more; autosummary would leave them to fail."""
+    modules = pkgutil.walk_packages(railquake.__path__, "railquake.")
+    known = {"railquake", *(module.name for module in modules)}
+    for path in (Path(app.srcdir) / "reference").glob("*.rst"):
+        if path.stem not in known:
+            path.unlink()
+
+
+def setup(app):
+    app.connect("builder-inited", write_reference)
+    app.connect("builder-inited", forget_modules_that_left, priority=100)  # before autosummary

@@ -1,0 +1,175 @@
+"""The contact table as the kernel reads it: one smooth gap, its gradient, mirrored sides."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import railquake as rq
+from railquake.assembly.geometry import ROLL_AXIS, SHIFT_AXIS
+from railquake.inputs.motion import GroundMotion
+from railquake.physics import constant, march, state
+from railquake.physics.profiles import axis_nodes, zone_contact
+from railquake.physics.vehicle import DOF_COUNT
+
+WHEELSET = state.VEHICLE + np.array([2 * (DOF_COUNT // 3) - 2, DOF_COUNT - 1])  # y, z
+SIDES = {"left": 0, "right": 1}
+ZONES = {"tread": 0, "flange": 1}
+
+
+class Bench:
+    """A scenario at grade, of which only the contact is used."""
+
+    def __init__(self, system):
+        self.system = system
+
+    def place(self, shift, height, roll, velocity=(0.0, 0.0, 0.0)):
+        """State with the wheelset held there over a level track."""
+        s = self.system.start.copy()
+        y, z = WHEELSET
+        s[[y, z, y + 1], 0] = (
+            shift,
+            height + self.system.constants[constant.WHEELSET_HEIGHT, 0],
+            roll,
+        )
+        s[[y + DOF_COUNT, z + DOF_COUNT, y + 1 + DOF_COUNT], 0] = velocity
+        march.find_contact_forces(s, self.system.constants, self.system.geometry)
+        return s
+
+    def patch(self, shift, roll, side, zone):
+        """G, dG/dY, dG/dpsi ... in the axes of a right-hand wheel."""
+        s = self.place(shift, -1.0, roll)  # well clear
+        q, geometry = self.system.constants, self.system.geometry
+        return march.patch_at(s, q, geometry, SIDES[side], ZONES[zone], 0)
+
+    def searched(self, shift, roll, zone):
+        """The same for a right-hand wheel by the grid method."""
+        g = self.system.geometry
+        first, last = (g.flange_points, len(g.wheel_y)) if zone == "tread" else (0, g.flange_points)
+        return zone_contact(shift, roll, first, last, g)
+
+
+@pytest.fixture(scope="module")
+def bench():
+    still = GroundMotion("still", 0.01, np.zeros(3))
+    return Bench(rq.assemble(rq.scenario(support="at-grade", motion=still)))
+
+
+def between_nodes(shift, roll):
+    """Whether both are well inside a cell: on its edge the slope has two values (see below)."""
+    return abs(math.remainder(shift, 1e-4)) > 1e-6 and abs(math.remainder(roll, 5e-4)) > 1e-6
+
+
+shifts = st.floats(-0.02, 0.02)
+rolls = st.floats(-0.04, 0.04)
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    shift=shifts, roll=rolls, side=st.sampled_from(list(SIDES)), zone=st.sampled_from(list(ZONES))
+)
+def test_force_follows_the_gradient_of_the_very_gap(bench, shift, roll, side, zone):
+    assume(between_nodes(shift, roll))
+    h = 1e-7
+    _, slope, gap_psi, *_ = bench.patch(shift, roll, side, zone)
+    sign = 1.0 if side == "right" else -1.0
+    by_shift, by_roll = (
+        sign
+        * (bench.patch(shift + dy, roll + dp, side, zone)[0]
+           - bench.patch(shift - dy, roll - dp, side, zone)[0]) / (2.0 * h)
+        for dy, dp in ((h, 0.0), (0.0, h))
+    )  # fmt: skip
+    assert slope == pytest.approx(by_shift, abs=1e-6 + 1e-6 * abs(slope))
+    assert gap_psi == pytest.approx(by_roll, abs=1e-6)
+
+
+@pytest.mark.parametrize("zone", list(ZONES))
+def test_table_holds_the_grids_numbers_at_its_nodes(bench, zone):
+    for shift in axis_nodes(SHIFT_AXIS)[[3, 200, 256, 300, 345]]:
+        for roll in axis_nodes(ROLL_AXIS)[[5, 180, 214, 240]]:
+            found = bench.patch(shift, roll, "right", zone)
+            assert found == pytest.approx(bench.searched(shift, roll, zone), rel=1e-6, abs=1e-9)
+
+
+def test_table_errs_by_less_than_a_micrometre_where_wheels_run(bench):
+    """Between the nodes, where a patch touches or nearly does (a load makes 70 micrometres)."""
+    drawn = np.random.default_rng(7)
+    checked = 0
+    for shift, roll in zip(
+        drawn.uniform(-8.5e-3, 8.5e-3, 400), drawn.uniform(-0.004, 0.004, 400), strict=True
+    ):
+        exact = {zone: bench.searched(shift, roll, zone)[0] for zone in ZONES}
+        for zone in ZONES:
+            if exact[zone] < min(exact.values()) + 0.2e-3:
+                found = bench.patch(shift, roll, "right", zone)[0]
+                assert found == pytest.approx(exact[zone], abs=1e-6), (zone, shift, roll)
+                checked += 1
+    assert checked > 400
+
+
+@pytest.mark.parametrize(("zone", "turn"), [("tread", 1e-5), ("flange", 0.02)])
+def test_gap_has_no_step_from_cell_to_cell_and_the_force_turns_little(bench, zone, turn):
+    """The gap's cubic is smooth along each axis; its cross derivative is only interpolated.
+
+    So on a cell's edge the force's direction steps: on the flange's flank by up to 12 mrad.  No
+    step of the gap itself, so no energy comes of it.
+    """
+    checked = 0
+    for shift in 1e-4 * np.arange(-85, 96, 5):
+        for roll in 5e-4 * np.arange(-8.0, 8.5, 1.5):
+            low = min(bench.patch(shift, roll, "right", z)[0] for z in ZONES)
+            for dy, dp in ((1e-9, 0.0), (0.0, 1e-9)):
+                ahead = bench.patch(shift + dy, roll + dp, "right", zone)
+                behind = bench.patch(shift - dy, roll - dp, "right", zone)
+                if ahead[0] > low + 0.2e-3:
+                    continue  # not where it bears
+                checked += 1
+                moved = 2.0 * (dy * ahead[1] + dp * ahead[2])
+                assert ahead[0] - behind[0] == pytest.approx(moved, abs=1e-10)
+                assert abs(math.atan(ahead[1]) - math.atan(behind[1])) < turn
+                assert ahead[2] == pytest.approx(behind[2], abs=1e-5)
+    assert checked > 50
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    shift=st.floats(-9e-3, 9e-3),
+    sunk=st.floats(0.0, 2e-4),
+    roll=st.floats(-4e-3, 4e-3),
+    velocity=st.tuples(*[st.floats(-0.2, 0.2)] * 3),
+)
+def test_left_is_the_mirror_image_of_right(bench, shift, sunk, roll, velocity):
+    assume(between_nodes(shift, roll))
+    low = min(bench.patch(shift, roll, side, zone)[0] for side in SIDES for zone in ZONES)
+    here = bench.place(shift, low + sunk, roll, velocity)[:, 0]
+    mirrored = (-velocity[0], velocity[1], -velocity[2])
+    there = bench.place(-shift, low + sunk, -roll, mirrored)[:, 0]
+    size = 1e-6 * max(abs(here[state.FORCE_Z]), abs(here[state.FORCE_Y]), 1.0)
+    for mine, other, sign in (
+        (state.FORCE_Y, state.FORCE_Y, -1.0),
+        (state.FORCE_Z, state.FORCE_Z, 1.0),
+        (state.FORCE_PSI, state.FORCE_PSI, -1.0),
+        (state.LOAD_LEFT, state.LOAD_RIGHT, 1.0),
+        (state.LATERAL_LEFT, state.LATERAL_RIGHT, -1.0),
+        (state.CREEP_POWER, state.CREEP_POWER, 1.0),
+        (state.SPIN_POWER, state.SPIN_POWER, 1.0),
+    ):
+        assert here[mine] == pytest.approx(sign * there[other], abs=size)
+
+
+def test_level_wheelset_bears_on_two_wheels_lifted_on_one_high_up_on_none(bench):
+    """The three regimes of the paper come out by themselves."""
+    rest = bench.system.start[:, 0]
+    height = rest[state.HEIGHT]
+    both = bench.place(0.0, height, 0.0)[:, 0]
+    assert both[state.LOAD_LEFT] == pytest.approx(bench.system.static_wheel_load, rel=1e-6)
+    assert both[state.LOAD_RIGHT] == pytest.approx(bench.system.static_wheel_load, rel=1e-6)
+    half = 0.8721  # m, half the distance of the rails' crowns
+    one = bench.place(0.0, height - half * math.sin(5e-3), 5e-3)[:, 0]  # right side down
+    assert one[state.LOAD_LEFT] == 0.0
+    assert one[state.LOAD_RIGHT] > 0.0
+    assert one[state.FORCE_PSI] < 0.0  # the right rail turns it back
+    none = bench.place(0.0, height - 1e-3, 0.0)[:, 0]
+    assert none[state.LOAD_LEFT] == none[state.LOAD_RIGHT] == none[state.FORCE_Y] == 0.0
