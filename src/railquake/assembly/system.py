@@ -162,8 +162,8 @@ def assemble(scenario: Scenario) -> System:
     steps = ground.duration / solver.dt
     if steps > MOST_STEPS:
         raise InputError(
-            f"solver.dt: {solver.dt:g} s takes {steps:.3g} steps over {ground.duration:g} s; at most "
-            f"{MOST_STEPS:.0e} are possible: take a longer step"
+            f"solver.dt: {solver.dt:g} s takes {steps:.3g} steps over {ground.duration:g} s; at "
+            f"most {MOST_STEPS:.0e} are possible: take a longer step"
         )
     drive = _drive(scenario, ground, solver.dt * _frame_steps(solver))
     drive.setflags(write=False)
