@@ -81,8 +81,10 @@ def test_force_follows_the_gradient_of_the_very_gap(bench, shift, roll, side, zo
            - bench.patch(shift - dy, roll - dp, side, zone)[0]) / (2.0 * h)
         for dy, dp in ((h, 0.0), (0.0, h))
     )  # fmt: skip
-    assert slope == pytest.approx(by_shift, abs=1e-6 + 1e-6 * abs(slope))
-    assert gap_psi == pytest.approx(by_roll, abs=1e-6)
+    # the differences' own error, largest where the flange falls off the rail's steep face
+    error = 1e-5 * (1.0 + abs(slope) + abs(gap_psi))
+    assert slope == pytest.approx(by_shift, abs=error)
+    assert gap_psi == pytest.approx(by_roll, abs=error)
 
 
 @pytest.mark.parametrize("zone", list(ZONES))
