@@ -65,19 +65,33 @@ def table(rows):
 
 
 def picture(rows, path):
-    """Curves of one geometry and load without spin."""
-    made, ax = figure(6.5, 4.4)
-    chosen = [r for r in rows if r["geom"] == "460x300" and r["phi_1_per_m"] == 0.0]
-    load = max(r["N_kN"] for r in chosen)
-    chosen = sorted((r for r in chosen if r["N_kN"] == load), key=lambda r: r["upsilon_y"])
-    creepage = [r["upsilon_y"] for r in chosen]
-    ax.plot(creepage, [-r["Fy_over_muN"] for r in chosen], "o", color="black", label="CONTACT")
-    for law, colour in zip(LAWS, (BLUE, ORANGE, GREEN, GREY), strict=True):
-        ax.plot(creepage, [-ours(r, law) for r in chosen], color=colour, label=LAWS[law])
-    ax.axhline(1.0, color=RED, linewidth=0.7, linestyle=":")
-    ax.set_xscale("log")
-    label(ax, "lateral creepage, 1", "force / (friction times load), 1", f"{load:g} kN, no spin")
-    legend(ax, loc="lower right")
+    """Curves of one geometry and load, without and with spin."""
+    made, axes = figure(9.0, 4.2, 1, 2, sharey=True)
+    load = max(r["N_kN"] for r in rows)
+    for ax, spinning in zip(axes, (False, True), strict=True):
+        chosen = [
+            r
+            for r in rows
+            if r["geom"] == "460x300"
+            and r["N_kN"] == load
+            and (r["phi_1_per_m"] != 0.0) == spinning
+            and r["upsilon_y"] > 0.0  # the axis is logarithmic
+        ]
+        creepage = [r["upsilon_y"] for r in chosen]
+        smooth = np.geomspace(min(creepage), max(creepage), 300)
+        for law, colour in zip(LAWS, (BLUE, ORANGE, GREEN, GREY), strict=True):
+            curve = [-ours({**chosen[0], "upsilon_y": u}, law) for u in smooth]
+            ax.plot(smooth, curve, color=colour, label=LAWS[law])
+        theirs = [-r["Fy_over_muN"] for r in chosen]
+        ax.plot(creepage, theirs, "o", markersize=4, color="black", label="CONTACT")
+        ax.axhline(1.0, color=RED, linewidth=0.7, linestyle=":")
+        ax.set_xscale("log")
+        spin = f"spin {chosen[0]['phi_1_per_m']:.3f} 1/m" if spinning else "no spin"
+        label(ax, "lateral creepage, 1", "", f"{load:g} kN, {spin}")
+    label(
+        axes[0], "lateral creepage, 1", "force / (friction times load), 1", f"{load:g} kN, no spin"
+    )
+    legend(axes[0], loc="center left")
     save(made, path)
 
 
