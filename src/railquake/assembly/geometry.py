@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from railquake.inputs.profile import Profile
     from railquake.inputs.wheelrail import WheelRail
 
-__all__ = ["FLOOR", "ROLL_AXIS", "SHIFT_AXIS", "build_geometry", "rail_centre", "with_table"]
+__all__ = ["FLOOR", "ROLL_AXIS", "SHIFT_AXIS", "build_geometry", "with_table"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -34,16 +34,6 @@ SHIFT_AXIS = Axis(fine=0.014, fine_step=0.1e-3, coarse_step=1.0e-3, end=0.130)
 ROLL_AXIS = Axis(fine=0.030, fine_step=0.5e-3, coarse_step=5.0e-3, end=0.800)
 
 
-def rail_centre(wheelrail: WheelRail, rail: Profile) -> float:
-    """Distance of the rail profile's origin from the track's centre, m: given, or by gauge."""
-    if wheelrail.rail_centre is not None:
-        return wheelrail.rail_centre
-    from railquake.inputs.profile import face_offset
-
-    assert wheelrail.gauge is not None  # the model asks for one of the two
-    return 0.5 * wheelrail.gauge - face_offset(rail, wheelrail.gauge_height)
-
-
 def build_geometry(wheelrail: WheelRail) -> Geometry:
     """Sample both profiles for the grid method; the table is left empty.
 
@@ -52,9 +42,9 @@ def build_geometry(wheelrail: WheelRail) -> Geometry:
     InputError
         If the profiles fold back or never meet.
     """
-    wheel = wheelrail.wheel.profile("wheel", f"{wheelrail.name} wheel")
-    rail = wheelrail.rail.profile("rail", f"{wheelrail.name} rail")
-    centre = rail_centre(wheelrail, rail)
+    wheel = wheelrail.wheel_profile()
+    rail = wheelrail.rail_profile()
+    centre = wheelrail.rail_half_distance(rail)
     wheel_y, wheel_z, wheel_dy, wheel_dz, wheel_curvature = _wheel_grid(wheel)
     steep = np.abs(wheel_dz) > np.tan(FLANGE_ANGLE) * np.abs(wheel_dy)
     inner = np.flatnonzero(steep & (wheel_y < 0.0))

@@ -17,7 +17,6 @@ from railquake.assembly.geometry import (
     ROLL_AXIS,
     SHIFT_AXIS,
     build_geometry,
-    rail_centre,
     with_table,
 )
 from railquake.assembly.vehicle import VehicleMatrices, vehicle_matrices
@@ -404,13 +403,13 @@ def _fill_contact(q: Array, scenario: Scenario) -> None:
     q[constant.SHIFT_AXIS : constant.SHIFT_AXIS + 6] = axis_constants(SHIFT_AXIS)
     q[constant.ROLL_AXIS : constant.ROLL_AXIS + 6] = axis_constants(ROLL_AXIS)
     q[constant.REFERENCE_ROLL] = wheelrail.reference_roll
-    wheel = wheelrail.wheel.profile("wheel", f"{wheelrail.name} wheel")
-    rail = wheelrail.rail.profile("rail", f"{wheelrail.name} rail")
+    wheel = wheelrail.wheel_profile()
+    rail = wheelrail.rail_profile()
     tip_y, tip_z = flange_tip(wheel)
     q[constant.TIP_Y] = wheelrail.running_circle + tip_y
     q[constant.TIP_Z] = wheelrail.rolling_radius + tip_z
     crown = rail.y[int(np.argmin(rail.z))]
-    q[constant.RAIL_CENTRE] = rail_centre(wheelrail, rail) + crown
+    q[constant.RAIL_CENTRE] = wheelrail.rail_half_distance(rail) + crown
     q[constant.SHIFT_LIMIT] = SHIFT_LIMIT
     q[constant.ROLL_LIMIT] = ROLL_LIMIT
 

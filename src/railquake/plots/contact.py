@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from railquake.assembly.geometry import rail_centre
 from railquake.plots.style import BLUE, RED, figure, label, plain, save
 
 if TYPE_CHECKING:
@@ -27,13 +26,13 @@ def write_contact_picture(wheelrail: WheelRail, standing: StandingWheelset, path
     path : Path
         PNG to write.
     """
-    wheel = wheelrail.wheel.profile("wheel", "wheel")
-    rail = wheelrail.rail.profile("rail", "rail")
+    wheel = wheelrail.wheel_profile()
+    rail = wheelrail.rail_profile()
     crown = float(rail.z.min())
     sine, cosine = np.sin(standing.roll), np.cos(standing.roll)
     made, axes = figure(10.0, 3.3, 1, 2)
     for ax, side, sign in ((axes[0], "left", -1.0), (axes[1], "right", 1.0)):
-        centre = sign * rail_centre(wheelrail, rail)
+        centre = sign * wheelrail.rail_half_distance(rail)
         ax.fill(1e3 * (centre + sign * rail.y), 1e3 * (rail.z - crown), color="#d9d9d9")
         y = sign * (wheelrail.running_circle + wheel.y)
         z = wheelrail.rolling_radius + wheel.z

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.assembly.geometry import rail_centre
 from railquake.physics.profiles import zone_extremum
 from railquake.plots.events import run_title
 from railquake.plots.outline import Outline, body_colours, box, outlines, placed, turned
@@ -69,9 +68,9 @@ def write_section(response: Response, path: Path) -> Path:
     """Draw the section at `Response.worst_frame`: the car, the wheelset, both contacts."""
     frame = response.worst_frame
     pair = response.system.scenario.wheelrail
-    wheel = pair.wheel.profile("wheel", "wheel")
-    rail = pair.rail.profile("rail", "rail")
-    centre = rail_centre(pair, rail)
+    wheel = pair.wheel_profile()
+    rail = pair.rail_profile()
+    centre = pair.rail_half_distance(rail)
 
     def at(name: str) -> float:
         return float(response.channel(name)[frame])
