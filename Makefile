@@ -63,7 +63,7 @@ constraints:
 	$(PYTHON) -m venv $(VENV)-pins
 	touch constraints.txt
 	$(VENV)-pins/bin/python -m pip install --quiet --upgrade setuptools
-	$(VENV)-pins/bin/python -m pip install --quiet -c constraints.txt -e ".[dev,docs,bench]"
+	$(VENV)-pins/bin/python -m pip install --quiet -c constraints.txt -e ".[dev,docs]"
 	{ echo "# Every version that the Makefile installs; see CONTRIBUTING.md, Dependencies."; \
 	  $(VENV)-pins/bin/python -m pip freeze --all --exclude pip --exclude-editable; } > constraints.new
 	mv constraints.new constraints.txt

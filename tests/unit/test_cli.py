@@ -334,14 +334,14 @@ def test_run_that_diverged_says_so_loudly(case, tmp_path, capsys, monkeypatch):
 
 
 def test_progress_is_shown_on_a_terminal_only(monkeypatch, capsys):
-    from railquake.cli import _progress
+    from railquake.cli.shared import progress_bar
 
-    with _progress() as (progress, say):
+    with progress_bar() as (progress, say):
         assert progress is None
         say("compiling")
     assert capsys.readouterr().err == "railquake: compiling\n"
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    with _progress() as (progress, say):
+    with progress_bar() as (progress, say):
         progress(1, 2)
         say("compiling")
     printed = capsys.readouterr()

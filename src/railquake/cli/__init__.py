@@ -1,0 +1,10 @@
+"""The command ``railquake``: thin, every command calls what a Python user would call.
+
+A module a group of commands; each registers with `application.app` when it is imported here.
+"""
+
+from railquake.cli import bench, probe, single
+from railquake.cli.application import app
+from railquake.cli.status import main
+
+__all__ = ["app", "bench", "main", "probe", "single"]

@@ -1,0 +1,148 @@
+"""What several commands need: their common options, progress, and how they print and write."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from railquake.errors import InputError
+
+__all__ = [
+    "Case",
+    "Changes",
+    "Json",
+    "Out",
+    "Picture",
+    "print_facts",
+    "print_json",
+    "progress_bar",
+    "read_column",
+    "write_picture",
+    "write_text",
+]
+
+Case = Annotated[Path, typer.Argument(metavar="CASE.toml", help="Case file.", show_default=False)]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a value, with its unit: --set motion.scale=1.5 --set vehicle.speed='80 km/h'; "
+        "files start from the case file's folder.",
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
+Picture = Annotated[Path | None, typer.Option("--picture", help="Picture (PNG) to write.")]
+
+
+@contextmanager
+def progress_bar() -> Iterator[tuple[Callable[[int, int], None] | None, Callable[[str], None]]]:
+    """A progress bar on a terminal's standard error, and a way to say something there."""
+
+    def say(text: str) -> None:
+        typer.echo(f"railquake: {text}", err=True)
+
+    if not sys.stderr.isatty():
+        yield None, say
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    with Progress(
+        TextColumn("{task.percentage:3.0f} %"),
+        BarColumn(),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+        transient=True,
+    ) as bar:
+        task = bar.add_task("run", total=None)
+        yield (
+            lambda done, total: bar.update(task, completed=done, total=total),
+            lambda text: bar.console.print(f"railquake: {text}"),
+        )
+
+
+def print_facts(facts: dict[str, Any]) -> None:
+    """A line for each; lists, such as warnings, a line for each item."""
+    for key, value in facts.items():
+        if isinstance(value, list):
+            for text in value:
+                typer.echo(f"{key.removesuffix('s')}: {text}")
+        elif value is not None:
+            shown = f"{value:.6g}" if isinstance(value, float) else value
+            typer.echo(f"{key:22} {shown}")
+
+
+def read_column(path: Path, name: str) -> Any:
+    """One column of a CSV file, by name, or the first where there is no header."""
+    import numpy as np
+
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "is not text"
+        raise InputError(f"{path}: cannot be read: {reason}") from None
+    column, values = 0, []
+    started = False
+    for number, line in enumerate(lines, 1):
+        cells = [cell.strip() for cell in line.split(",")]
+        if not line.strip() or line.startswith("#"):
+            continue
+        if not started and not _is_number(cells[0]):
+            if name not in cells:
+                raise InputError(f'{path}, line {number}: no column "{name}" among {line!r}')
+            column, started = cells.index(name), True
+            continue
+        started = True
+        text = cells[column] if column < len(cells) else ""
+        if not _is_number(text) or not np.isfinite(float(text)):
+            raise InputError(f'{path}, line {number}: "{text}" is no finite number')
+        values.append(float(text))
+    if not values:
+        raise InputError(f"{path}: holds no rows; write a column {name}, one value a line")
+    return np.array(values)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def write_picture(path: Path, write: Callable[[Path], Any]) -> None:
+    """Write a picture under a temporary name and move it into its place."""
+    part = path.with_name(f".{path.name}.part")
+    try:
+        write(part)
+        part.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file under a temporary name and move it into its place."""
+    part = path.with_name(f".{path.name}.part")
+    try:
+        part.write_text(text, encoding="utf-8")
+        part.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def print_json(value: Any) -> None:
+    """Print JSON to standard output."""
+    from railquake.output import json_text
+
+    typer.echo(json_text(value))
