@@ -44,6 +44,8 @@ def select(
 
     Example: railquake select --records my-records --hazard berkeley --poe 0.05 --count 20
     """
+    import numpy as np
+
     from railquake.output import prepare_folder
     from railquake.suite import load_hazard, manifest_text, select_records, suite_spectra
 
@@ -61,7 +63,8 @@ def select(
             name=out.name or "suite",
             progress=progress,
         )
-        spectra = suite_spectra(chosen.suite)
+        shown = np.geomspace(min(0.02, periods[0]), max(5.0, periods[1]), 60)
+        spectra = suite_spectra(chosen.suite, shown)
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:

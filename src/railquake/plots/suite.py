@@ -116,7 +116,7 @@ def write_suite_picture(
         The picture.
     """
     made = blank(8.5, 6.6)
-    upper = made.add_axes((0.085, 0.37, 0.895, 0.48))
+    upper = made.add_axes((0.085, 0.365, 0.895, 0.525))
     draw_suite(upper, spectra, target, period_range)
     upper.set_xlabel("")
     upper.tick_params(labelbottom=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import math
 import re
 from collections import Counter
@@ -106,7 +105,8 @@ def read_rows(text: str, where: str) -> tuple[Row, ...]:
     for column in REQUIRED:
         if column not in header:
             raise InputError(
-                f"{where}, line {number}: column {column} is missing among {', '.join(map(repr, header))}"
+                f"{where}, line {number}: column {column} is missing among "
+                f"{', '.join(map(repr, header))}"
             )
     for column in header:
         if column and header.count(column) > 1:
@@ -129,11 +129,13 @@ def read_rows(text: str, where: str) -> tuple[Row, ...]:
 
 def _lines(text: str, where: str) -> Iterator[tuple[int, list[str]]]:
     """Number and cells of every line that is neither blank nor a remark."""
-    reader = csv.reader(io.StringIO(text), strict=True)
+    # remarks become blank lines first: a quotation mark in one means nothing
+    lines = ("" if line.startswith("#") else line for line in text.splitlines())
+    reader = csv.reader(lines, strict=True)
     try:
         for cells in reader:
             stripped = [cell.strip() for cell in cells]
-            if any(stripped) and not stripped[0].startswith("#"):
+            if any(stripped):
                 yield reader.line_num, stripped
     except csv.Error as error:
         raise InputError(f"{where}, line {reader.line_num}: is no CSV: {error}") from None
@@ -148,10 +150,11 @@ def _row(cells: dict[str, str], place: str) -> Row:
     wanted = cells.get("rsn", "")
     if wanted:
         if not (wanted.isascii() and wanted.isdigit()):
-            raise InputError(f'{place}: rsn: must be a whole number, found {wanted!r}')
+            raise InputError(f"{place}: rsn: must be a whole number, found {wanted!r}")
         if given is not None and int(given[1]) != int(wanted):
             raise InputError(
-                f"{place}: rsn: is {int(wanted)}, but the file is called {file}; correct one of them"
+                f"{place}: rsn: is {int(wanted)}, but the file is called {file}; "
+                "correct one of them"
             )
     return Row(place, file, factor, {key: text for key, text in cells.items() if key and text})
 
@@ -160,7 +163,7 @@ def _number(text: str, what: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise InputError(f'{what}: must be a number, found {text!r}') from None
+        raise InputError(f"{what}: must be a number, found {text!r}") from None
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(f"{what}: must be finite and over zero, found {text}")
     return value

@@ -163,6 +163,7 @@ def select_records(
         If an argument is out of range, or the folder holds no records or fewer than `count`.
     """
     _check(count, period_range, largest_scale, scatter)
+    target.at(period_range)  # refused here, an end outside the target is named as it was given
     periods = np.geomspace(*period_range, POINTS)
     wanted = np.log(target.at(periods))
     folder = Path(records)
@@ -202,9 +203,9 @@ def manifest_text(selection: Selection) -> str:
     target, periods = selection.target, selection.periods
     text.write(
         f"# Selected from {selection.considered} components to meet hazard {target.title}\n"
-        f"#   in the geometric mean from {periods[0]:g} to {periods[-1]:g} s, 5 % damping; rms of\n"
-        f"#   ln(mean / target) {selection.misfit:.4f}. Files are relative to the records' folder;\n"
-        "#   PGA and PGV are of the record before scaling.\n"
+        f"#   in the geometric mean from {periods[0]:g} to {periods[-1]:g} s, 5 % damping;\n"
+        f"#   rms of ln(mean / target): {selection.misfit:.4f}. Files are relative to the\n"
+        "#   folder of the records; PGA and PGV are of the record before scaling.\n"
     )
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["file", "channel", "scale_factor", "dt_s", "npts", "pga_g", "pgv_m_s"])
@@ -236,9 +237,7 @@ def _check(
         )
 
 
-def _members(
-    folder: Path, components: list[Component], factors: Array
-) -> tuple[SuiteMember, ...]:
+def _members(folder: Path, components: list[Component], factors: Array) -> tuple[SuiteMember, ...]:
     """Suite members named by file, with the channel where the file has several."""
     stems = [Path(one.file).stem for one in components]
     members = []

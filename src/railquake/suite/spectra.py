@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from railquake.errors import InputError
 from railquake.inputs.motion import GroundMotion, response_spectrum
 from railquake.suite.model import Suite
 
@@ -55,12 +56,16 @@ def suite_spectra(
     Raises
     ------
     InputError
-        If a record cannot be read, or a period is negative.
+        If a record cannot be read or is zero throughout, or a period is negative.
     """
     wanted = np.atleast_1d(np.array(PERIODS if periods is None else periods, dtype=np.float64))
-    spectra = np.array(
-        [response_spectrum(m.ground_motion(), wanted, damping_ratio).psa for m in suite.members]
-    )
+    rows = []
+    for member in suite.members:
+        motion = member.ground_motion()
+        if motion.pga == 0.0:
+            raise InputError(f"motion {member.name}: is zero throughout; leave it out of the suite")
+        rows.append(response_spectrum(motion, wanted, damping_ratio).psa)
+    spectra = np.array(rows)
     return {
         "names": tuple(member.name for member in suite.members),
         "periods": wanted,
