@@ -23,7 +23,7 @@ ALL_ZERO = "all zero"
 DAMAGED = "damaged or incomplete"
 
 # As agencies mark vertical components in labels, and at the end of a file's name.
-_VERTICAL_LABEL = re.compile(r"\b(?:up|down|dwn|vert\w*|vrt|u-?d|[hbe][hln]?z|[vz])\b", re.I)
+_VERTICAL_LABEL = re.compile(r"\b(?:up|down|dwn|vert\w*|vrt|u-?d|[hbe][hln]z|[vz])\b", re.I)
 _VERTICAL_FILE = re.compile(r"(?:[-_. ](?:up|dwn|down|vert|vrt|ver|ud|v|z)|dwn)$", re.I)
 _VERTICAL_ENDING = re.compile(r"\.(?:ud[12]?|up)", re.I)
 
