@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from railquake.assessment import versions
 from railquake.inputs.scenario import scenario
 from railquake.lockstep import simulate_many
-from railquake.physics.kernel import LOCKSTEP
+from railquake.physics.kernel import lockstep_target
 from railquake.simulation import simulate
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def _rate(case: Scenario, repeats: int) -> tuple[float, float]:
 
 def _lockstep_rate(threads: int, repeats: int, motion: dict[str, Any]) -> float:
     """Best steps per second of a batch, assembly included: four scenarios to a lane."""
-    count = 4 * LOCKSTEP.lanes * threads
+    count = 4 * lockstep_target().lanes * threads
     cases = [
         _case(motion={**motion, "seed": 18 + k}, scale=0.6 + 0.8 * k / count) for k in range(count)
     ]
