@@ -49,9 +49,14 @@ def _with_unit(value: float | None, unit: str) -> str:
 
 def _share(value: float) -> str:
     """A relative number in per cent, or as a power of ten where that is shorter."""
-    if value == 0.0 or value >= 1e-6 or not math.isfinite(value):
+    if value == 0.0 or value >= 1e-5 or not math.isfinite(value):
         return f"{100.0 * value:.2g} %"
-    return f"{value:.1g}"
+    return _small(value)
+
+
+def _small(value: float) -> str:
+    mantissa, exponent = f"{value:.0e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
 
 
 def _difference(result: Result) -> str:
@@ -63,7 +68,7 @@ def _difference(result: Result) -> str:
             return _with_unit(0.0, result.unit)
         return f"{result.difference:.2g} {result.unit}".rstrip()
     if result.difference < FLOOR:
-        return f"< {FLOOR:.0e}"
+        return f"below {_small(FLOOR)}"
     suffix = " of peak" if result.kind == "of peak" else ""
     return _share(result.difference) + suffix
 
