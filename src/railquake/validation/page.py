@@ -16,8 +16,8 @@ __all__ = ["check_page", "page_text", "summary", "text_table", "write_page"]
 
 PICTURES = Path("images") / "validation"  # beside the page
 HEAD = ("quantity", "reference", "ours", "difference", "tolerance", "verdict")
-# Differences below this part of the values hang on the compiler and are not printed.
-FLOOR = 1e-9
+# Differences below this part of the tolerance hang on the compiler and are not printed.
+FLOOR = 1e-3
 
 INTRODUCTION = """\
 # Validation
@@ -62,13 +62,13 @@ def _small(value: float) -> str:
 def _difference(result: Result) -> str:
     if result.kind == "at most":
         return "–"
+    floor = FLOOR * result.tolerance
     if result.kind == "absolute":
-        scale = max(abs(result.reference or 0.0), abs(result.ours))
-        if result.difference < FLOOR * scale:
-            return _with_unit(0.0, result.unit)
+        if result.difference < floor:
+            return f"below {_with_unit(floor, result.unit)}"
         return f"{result.difference:.2g} {result.unit}".rstrip()
-    if result.difference < FLOOR:
-        return f"below {_small(FLOOR)}"
+    if result.difference < floor:
+        return f"below {_share(floor)}"
     suffix = " of peak" if result.kind == "of peak" else ""
     return _share(result.difference) + suffix
 

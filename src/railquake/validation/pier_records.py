@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -91,7 +92,7 @@ def compare_pier(data: Path | None, pier: Mapping[str, Any], tolerance: float) -
                 Picture(
                     "histories",
                     f"Histories under {record} × {factor:g}.",
-                    lambda path, time=time, rows=rows: write_histories(time, rows, path),
+                    partial(write_histories, time, rows),
                 )
             )
         if record in (RECORDS[0], RECORDS[-1]):

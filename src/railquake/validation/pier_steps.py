@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -74,7 +75,7 @@ def compare(data: Path | None) -> Outcome:
                 hinge,
                 f"The pier with its hinge {hinge} under RSN181: OpenSees, railquake over it, and "
                 "the difference.",
-                lambda path, at=expected["t"][1:], rows=drawn: write_histories(at, rows, path),
+                partial(write_histories, expected["t"][1:], drawn),
             )
         )
     return Outcome(tuple(results), tuple(pictures))
