@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -57,7 +58,11 @@ def validate(
         if not as_json:
             typer.echo(f"{text_table([report])}\n")
 
-    reports = run(names, folder, show)
+    def begin(name: str) -> None:
+        if sys.stderr.isatty():
+            typer.echo(f"railquake: {name} ...", err=True)
+
+    reports = run(names, folder, show, begin)
     if page is not None:
         write_page(reports, page)
     if as_json:

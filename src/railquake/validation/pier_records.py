@@ -6,7 +6,7 @@ import csv
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from railquake.fem.pier import opensees_pier
 from railquake.inputs.scenario import scenario
@@ -15,6 +15,10 @@ from railquake.simulation import simulate
 from railquake.validation.comparison import Outcome, Picture, Result, of_peak
 from railquake.validation.pictures import write_histories, write_loops
 from railquake.validation.reference import paper_record
+
+if TYPE_CHECKING:
+    from railquake.inputs.scenario import Scenario
+    from railquake.response import Response
 
 __all__ = ["FILES", "RECORDS", "SETTINGS", "compare_pier"]
 
@@ -25,6 +29,7 @@ RECORDS = (
 MANIFEST = "records/paper_suite/manifest.csv"
 FILES = (MANIFEST, *(f"records/paper_suite/{record}.AT2" for record in RECORDS))
 DT = 2.5e-4  # s, of both; below the train's critical step
+FURTHER, FURTHER_TOLERANCE = 1e-6, 1e-6
 QUANTITIES = (
     # channel here, in OpenSees, name, unit
     ("bridge_displacement_m", "displacement", "top displacement", "m"),
@@ -38,6 +43,13 @@ Newmark's average acceleration, Newton's method to 1e-12). Both take steps of 0.
 the paper's records, scaled as in the paper for 5 % in 50 years."""
 
 
+def _run(case: Scenario) -> Response:
+    response = simulate(case)
+    if response.status in ("diverged", "not converged"):
+        raise ArithmeticError(f"{case.motion.record}: {response.status}")
+    return response
+
+
 def scale_factors(data: Path) -> dict[str, float]:
     """The paper's scale factor of each of its records."""
     with open(data / MANIFEST, newline="", encoding="utf-8") as file:
@@ -47,6 +59,8 @@ def scale_factors(data: Path) -> dict[str, float]:
 
 def compare_pier(data: Path | None, pier: Mapping[str, Any], tolerance: float) -> Outcome:
     """Run a pier under every record, here and in OpenSees.
+
+    A pier whose hinge yields is run once more here, with Newton's method carried further.
 
     Parameters
     ----------
@@ -64,10 +78,11 @@ def compare_pier(data: Path | None, pier: Mapping[str, Any], tolerance: float) -
         path = paper_record(data, record)
         assert data is not None
         factor = scale_factors(data)[record]
-        case = scenario(support={**pier, "coupled": False}, record=path, scale=factor, dt=DT)
-        response = simulate(case)
-        if response.status in ("diverged", "not converged"):
-            raise ArithmeticError(f"{record}: the run {response.status}")
+        inputs: dict[str, Any] = {
+            "support": {**pier, "coupled": False}, "record": path, "scale": factor, "dt": DT,
+        }  # fmt: skip
+        case = scenario(**inputs)
+        response = _run(case)
         ground = case.ground_motion()
         assert isinstance(case.support, Pier)
         theirs = opensees_pier(
@@ -82,6 +97,15 @@ def compare_pier(data: Path | None, pier: Mapping[str, Any], tolerance: float) -
             )
             for _, name, text, unit in QUANTITIES
         ]  # fmt: skip
+        if case.support.hinge != "elastic":
+            further = _run(scenario(**inputs, newton_tolerance=FURTHER, newton_max_iterations=200))
+            results.append(
+                of_peak(
+                    f"{record} × {factor:g}: base moment, Newton's method to {FURTHER:g}", "N m",
+                    reference=theirs.base_moment, ours=further.channel("base_moment_n_m")[1:],
+                    tolerance=FURTHER_TOLERANCE,
+                )
+            )  # fmt: skip
         if record == RECORDS[0]:
             time = response.times[1:]
             rows = [
