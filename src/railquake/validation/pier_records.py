@@ -46,7 +46,7 @@ the paper's records, scaled as in the paper for 5 % in 50 years."""
 def _run(case: Scenario) -> Response:
     response = simulate(case)
     if response.status in ("diverged", "not converged"):
-        raise ArithmeticError(f"{case.motion.record}: {response.status}")
+        raise ArithmeticError(f"{response.system.ground.name}: {response.status}")
     return response
 
 

@@ -192,3 +192,16 @@ def test_the_environment_may_name_the_data(monkeypatch, tmp_path):
     monkeypatch.setenv("RAILQUAKE_SHARED", str(tmp_path / "none"))
     with pytest.raises(InputError, match="RAILQUAKE_SHARED"):
         data_folder(None)
+
+
+def test_help_ends_with_an_example(capsys):
+    assert main(["validate", "--help"]) == 0
+    assert "Example: railquake validate" in capsys.readouterr().out
+
+
+def test_what_begins_is_said_on_a_terminal_only(capsys, monkeypatch):
+    assert main(["validate", "--only", "good-one"]) == 0
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    assert main(["validate", "--only", "good-one"]) == 0
+    assert capsys.readouterr().err == "railquake: good-one ...\n"
