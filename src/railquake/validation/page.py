@@ -26,8 +26,8 @@ Every part of railquake is held here against something that it did not write: pu
 other programs, closed forms. The page is written by the program itself:
 
 ```
-make validate                     # in a checkout, with the folder of reference data beside it
-railquake validate --data DIR     # anywhere; pip install railquake[fem] brings OpenSees
+make validate                  # in a checkout; the reference data lie in ../shared
+railquake validate --data DIR  # anywhere; pip install railquake[fem] brings OpenSees
 ```
 
 The command ends with status 0 only if everything ran and agrees. A tolerance is stated before the
@@ -115,20 +115,31 @@ def text_table(reports: Iterable[Report]) -> str:
 
 
 def summary(reports: Sequence[Report]) -> str:
-    """One line: how many agree, and which do not."""
-    counted = [
-        f"{sum(report.verdict == verdict for report in reports)} {verdict}"
-        for verdict in ("agrees", "outside", "skipped", "failed")
-        if verdict == "agrees" or any(report.verdict == verdict for report in reports)
-    ]
+    """One line: how many agree, and what became of the others."""
     colour = "green" if is_green(reports) else "not green"
-    return f"{colour}: of {len(reports)} comparisons {', '.join(counted)}"
+    agreeing = sum(report.verdict == "agrees" for report in reports)
+    others = [
+        f"{count} {verdict}"
+        for verdict in ("outside", "skipped", "failed")
+        if (count := sum(report.verdict == verdict for report in reports))
+    ]
+    return ", ".join([f"{colour}: {agreeing} of {len(reports)} comparisons agree", *others])
 
 
 def _markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     lines += ["| " + " | ".join(cell.replace("|", r"\|") for cell in row) + " |" for row in rows]
     return lines
+
+
+def _unbroken(cells: Sequence[str]) -> tuple[str, ...]:
+    """The row with each number, its sign, exponent and unit kept on one line."""
+    return cells[0], *(
+        cell.replace(" ", "\N{NO-BREAK SPACE}")
+        .replace("\N{NO-BREAK SPACE}of\N{NO-BREAK SPACE}", " of ")
+        .replace("-", "\N{MINUS SIGN}")
+        for cell in cells[1:]
+    )
 
 
 def _section(report: Report, drawn: Sequence[tuple[str, str]]) -> list[str]:
@@ -145,7 +156,8 @@ def _section(report: Report, drawn: Sequence[tuple[str, str]]) -> list[str]:
     lines += [f"**Why this tolerance.** {comparison.WHY.strip()}", ""]
     if report.outcome is None or report.error:
         return [*lines, f"**{report.verdict.capitalize()}.** {_reason(report)}", ""]
-    lines += [*_markdown_table(HEAD, (_cells(result) for result in report.outcome.results)), ""]
+    rows = (_unbroken(_cells(result)) for result in report.outcome.results)
+    lines += [*_markdown_table(HEAD, rows), ""]
     if report.outcome.note:
         lines += [report.outcome.note.strip(), ""]
     for file, caption in drawn:
