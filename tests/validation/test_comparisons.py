@@ -1,14 +1,16 @@
 """Every comparison of `railquake validate` agrees; the numbers it uses are its source's."""
 
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from railquake.validation import registry
-from railquake.validation.reference import columns, numbers_beside
+from railquake.validation.reference import columns, numbers_beside, toml
 from railquake.validation.runner import run_one
 
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 IN_CI = bool(os.environ.get("CI"))
 
 
@@ -58,3 +60,20 @@ def test_the_numbers_here_are_those_of_the_source(shared, comparison, here, sour
     theirs = columns(shared / "oracles" / source)
     for column, values in columns(numbers_beside(comparison, here)).items():
         np.testing.assert_array_equal(values, theirs[column])
+
+
+def test_docs_state_each_creep_laws_error_as_it_is_held():
+    lines = (DOCS / "theory" / "creep.md").read_text().splitlines()
+    for law, bounds in toml(numbers_beside("creep_laws", "bounds.toml")).items():
+        cells = f"| {bounds['none']:.3f} | {bounds['spin']:.3f} |"
+        assert any(line.startswith(f'| `"{law}"`') and cells in line for line in lines), law
+
+
+def test_the_docs_page_has_every_comparison_and_its_plots():
+    page = (DOCS / "validation.md").read_text()
+    for name in registry.COMPARISONS:
+        assert f"({name.replace('_', '-')})=" in page, "run make validate"
+    drawn = [line.split()[-1] for line in page.splitlines() if line.startswith("```{figure}")]
+    assert drawn and all((DOCS / file).is_file() for file in drawn)
+    here = {path.name for path in (DOCS / "images" / "validation").iterdir()}
+    assert here == {Path(file).name for file in drawn}  # none is left from a former run
