@@ -63,14 +63,15 @@ def validate(
             typer.echo(f"railquake: {name} ...", err=True)
 
     reports = run(names, folder, show, begin)
-    if page is not None:
-        write_page(reports, page)
+    undrawn = write_page(reports, page) if page is not None else []
+    green = is_green(reports) and not undrawn
     if as_json:
-        green = is_green(reports)
         print_json({"green": green, "comparisons": [report.as_dict() for report in reports]})
     else:
         typer.echo(summary(reports))
         if page is not None:
             typer.echo(f"page and plots: {page}")
-    if not is_green(reports):
+    for complaint in undrawn:
+        typer.echo(f"railquake: {complaint}", err=True)
+    if not green:
         raise typer.Exit(NOT_GREEN)

@@ -185,7 +185,7 @@ def page_text(reports: Sequence[Report], drawn: dict[str, list[tuple[str, str]]]
     return "\n".join(lines).rstrip() + "\n"
 
 
-def write_page(reports: Sequence[Report], path: Path) -> list[Path]:
+def write_page(reports: Sequence[Report], path: Path) -> list[str]:
     """Write the page, and its pictures in a folder ``images/validation`` beside it.
 
     All are written under temporary names and moved when the last is drawn.  Pictures of
@@ -199,8 +199,8 @@ def write_page(reports: Sequence[Report], path: Path) -> list[Path]:
 
     Returns
     -------
-    list of Path
-        What was written, the page first.
+    list of str
+        A line for each plot that could not be drawn; the page does without it.
 
     Raises
     ------
@@ -210,29 +210,40 @@ def write_page(reports: Sequence[Report], path: Path) -> list[Path]:
     check_page(path)
     folder = path.parent / PICTURES
     with tempfile.TemporaryDirectory() as temporary:
-        drawn: dict[str, list[tuple[str, str]]] = {}
-        files = []
-        for report in reports:
-            for picture in report.outcome.pictures if report.outcome else ():
-                file = f"{report.name}-{picture.name}.png"
-                picture.draw(Path(temporary) / file)
-                files.append(file)
-                drawn.setdefault(report.name, []).append(
-                    ((PICTURES / file).as_posix(), picture.caption)
-                )
+        drawn, complaints = _draw(reports, Path(temporary))
         part = path.with_name(f".{path.name}.part")
         try:
             part.write_text(page_text(reports, drawn), encoding="utf-8")
-            if files:
-                folder.mkdir(parents=True, exist_ok=True)
-            for file in files:
-                shutil.move(Path(temporary) / file, folder / file)
+            folder.mkdir(parents=True, exist_ok=True)
+            for file in Path(temporary).iterdir():
+                shutil.move(file, folder / file.name)
             part.replace(path)
         except OSError as error:
             raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
         finally:
             part.unlink(missing_ok=True)
-    return [path, *(folder / file for file in files)]
+    return complaints
+
+
+def _draw(
+    reports: Sequence[Report], folder: Path
+) -> tuple[dict[str, list[tuple[str, str]]], list[str]]:
+    """Draw all pictures; links and captions by comparison, and what could not be drawn."""
+    drawn: dict[str, list[tuple[str, str]]] = {}
+    complaints = []
+    for report in reports:
+        for picture in report.outcome.pictures if report.outcome else ():
+            file = f"{report.name}-{picture.name}.png"
+            try:
+                picture.draw(folder / file)
+            except Exception as error:
+                (folder / file).unlink(missing_ok=True)
+                reason = " ".join(f"{type(error).__name__}: {error}".split())
+                complaints.append(f"{report.name}: plot {picture.name} failed: {reason}")
+                continue
+            link = (PICTURES / file).as_posix()
+            drawn.setdefault(report.name, []).append((link, picture.caption))
+    return drawn, complaints
 
 
 def check_page(path: Path) -> None:

@@ -154,6 +154,17 @@ def test_page_has_a_section_with_source_reason_table_and_plot_for_each(capsys, t
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
 
 
+def test_plot_that_fails_is_named_and_the_page_written_without_it(capsys, monkeypatch, tmp_path):
+    bad = Picture("wheel", "A wheel.", raising(ZeroDivisionError("round")))
+    outcome = Outcome(GOOD.results, (bad, *GOOD.pictures))
+    monkeypatch.setitem(KNOWN, "good_one", comparison(lambda data: outcome))
+    page = tmp_path / "validation.md"
+    assert main(["validate", "--only", "good-one", "--page", str(page)]) == 1
+    complaint = "railquake: good-one: plot wheel failed: ZeroDivisionError: round\n"
+    assert capsys.readouterr().err == complaint
+    assert "good-one-cart.png" in page.read_text() and "wheel" not in page.read_text()
+
+
 def test_the_page_is_the_same_when_written_again(capsys, tmp_path):
     for name in ("a.md", "b.md"):
         validate(capsys, "good-one", "outside", more=["--page", tmp_path / name])
