@@ -16,7 +16,7 @@ pressure and the angle of the contact plane at its reference point; both in trac
 )
 WHY = """A point is held against the centre of a patch that is 4 to 25 mm wide: where the curvatures
 change across it the centre lies beside the point of first contact, by up to 0.5 mm for most states
-and 3 mm where the contact is nearly conformal (decided from the profiles, see
+and 4 mm where the contact is nearly conformal (decided from the profiles, see
 [the approach](#contact-approach)). The tolerances are those found at each shift, rounded up. At
 -7 mm from 50 kN on CONTACT's reference point moves along the curved flange, hence the angle's
 tolerance there."""

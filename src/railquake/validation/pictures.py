@@ -34,7 +34,8 @@ def write_loops(
 
     Parameters
     ----------
-    loops : sequence of (title, rotation, theirs, ours)
+    loops : sequence of (str, array, array, array)
+        Title, rotations, their moments and ours.
     labels : sequence of (str, str)
         Axis labels of each.
     path : Path
@@ -65,7 +66,8 @@ def write_histories(
     ----------
     time : array, shape (n,)
         s.
-    histories : sequence of (label with unit, theirs, ours)
+    histories : sequence of (str, array, array)
+        Label with the unit, theirs and ours.
     path : Path
         PNG to write.
     reference : str
