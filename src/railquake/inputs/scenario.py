@@ -163,6 +163,8 @@ class Scenario(InputModel):
         for section in ("vehicle", "support", "wheelrail"):
             for key in _NOT_PHYSICS:
                 data[section].pop(key, None)
+        if self.solver.dt != "auto":
+            data["solver"].pop("time_step_tolerance")
         for table, key in (
             (data["wheelrail"]["wheel"], "file"),
             (data["wheelrail"]["rail"], "file"),
