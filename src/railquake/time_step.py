@@ -112,9 +112,9 @@ def search_time_step(
         fine = run([_with_step(scenario, _step(scenario, halvings + 1)) for scenario in scenarios])
         error = 2.0 * max(_difference(a, b) for a, b in zip(coarse, fine, strict=True))
         if error <= tolerance:
-            return TimeStep(halvings, error, tolerance, len(scenarios))
+            return TimeStep(halvings, float(error), tolerance, len(scenarios))
         coarse = fine
-    return TimeStep(HALVINGS, 0.5 * error, tolerance, len(scenarios))
+    return TimeStep(HALVINGS, float(0.5 * error), tolerance, len(scenarios))
 
 
 def _difference(coarse: Mapping[str, Any], fine: Mapping[str, Any]) -> float:
