@@ -2,6 +2,7 @@
 PYTHON ?= python3
 VENV   ?= .venv
 DEMO   ?= demo-out
+RECORDS ?= ../shared/records/paper_suite
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input
 SHELL  := /bin/bash
@@ -39,6 +40,8 @@ docs: $(VENV)/.ready-docs
 
 bench: $(VENV)/.ready-bench
 	$(BIN)/railquake bench
+	$(BIN)/python benchmarks/shortcuts.py $(RECORDS)
+	$(BIN)/python benchmarks/lockstep_memory.py
 
 # Every comparison, and the documentation's page of them; the reference data lie in ../shared.
 validate: $(VENV)/.ready-fem

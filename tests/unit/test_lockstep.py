@@ -136,3 +136,12 @@ def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
         "pd" in parts[1] and f"%{register}" in parts[2] for parts in instructions if len(parts) > 2
     )
     assert packed > 1500
+
+
+def test_one_by_one_is_the_single_engine():
+    cases = mixed()[:2]
+    rows = dict(rq.simulate_many(cases, threads=1, hinge_solve="newton"))
+    for index, case in enumerate(cases):
+        assert untimed(rows[index]) == untimed(rq.assess(rq.simulate(case)))
+    with pytest.raises(rq.InputError, match="hinge_solve"):
+        rq.simulate_many([], hinge_solve="euler")
