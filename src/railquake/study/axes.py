@@ -1,0 +1,566 @@
+"""Axes of a study: lists, named variants and distributions."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from railquake.errors import InputError
+from railquake.inputs._model import did_you_mean, toml_type
+from railquake.inputs._toml import is_path
+from railquake.inputs.paths import Input, input_at
+from railquake.inputs.units import shown, to_si
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = [
+    "DISTRIBUTIONS",
+    "Axis",
+    "DistributionAxis",
+    "ListAxis",
+    "Sampling",
+    "Variant",
+    "VariantAxis",
+    "parse_axes",
+    "parse_sampling",
+    "sampled",
+]
+
+METHODS = ("latin-hypercube", "sobol")
+MOST_SAMPLES = 10_000_000
+# Paths whose texts name files where they have a folder or an ending.
+_FILES = (
+    "vehicle.preset", "support.preset", "wheelrail.preset", "support.file", "motion.record",
+    "motion.vertical", "wheelrail.wheel", "wheelrail.rail", "wheelrail.wheel.file",
+    "wheelrail.rail.file",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class ListAxis:
+    """An input that takes each of some values.
+
+    Parameters
+    ----------
+    path : str
+        The input, ``"vehicle.speed"``.
+    values : tuple
+        In SI units.
+    kind : str
+        See `inputs.paths.Input`.
+    """
+
+    path: str
+    values: tuple[Any, ...]
+    kind: str = "any"
+
+    @property
+    def column(self) -> str:
+        """Name of its column in the table."""
+        return self.path
+
+    @property
+    def size(self) -> int:
+        """Number of its values."""
+        return len(self.values)
+
+    def changes(self, index: int) -> dict[str, Any]:
+        """What it sets."""
+        return {self.path: self.values[index]}
+
+    def label(self, index: int) -> Any:
+        """What stands in its column."""
+        value = self.values[index]
+        return value if isinstance(value, bool | int | float | str) else json.dumps(value)
+
+    def to_toml(self) -> Any:
+        """The axis as a study file has it."""
+        return list(self.values)
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One of several named cases; it sets several inputs at once."""
+
+    name: str
+    changes: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class VariantAxis:
+    """Named variants, each of which sets several inputs.
+
+    Parameters
+    ----------
+    column : str
+        Name of the axis.
+    variants : tuple of Variant
+        At least one.
+    """
+
+    column: str
+    variants: tuple[Variant, ...]
+    kind: str = field(default="text", init=False)
+
+    @property
+    def size(self) -> int:
+        """Number of variants."""
+        return len(self.variants)
+
+    @property
+    def paths(self) -> set[str]:
+        """All inputs that some variant sets."""
+        return {path for variant in self.variants for path in variant.changes}
+
+    def changes(self, index: int) -> dict[str, Any]:
+        """What a variant sets."""
+        return dict(self.variants[index].changes)
+
+    def label(self, index: int) -> str:
+        """A variant's name."""
+        return self.variants[index].name
+
+    def to_toml(self) -> Any:
+        """The axis as a study file has it."""
+        return [{"name": v.name, "set": dict(v.changes)} for v in self.variants]
+
+
+@dataclass(frozen=True)
+class DistributionAxis:
+    """An input that is sampled from a distribution.
+
+    Parameters
+    ----------
+    path : str
+        The input.
+    distribution : str
+        One of `DISTRIBUTIONS`.
+    parameters : mapping
+        In SI units.
+    kind : str
+        ``"number"`` or ``"integer"``.
+    """
+
+    path: str
+    distribution: str
+    parameters: Mapping[str, float]
+    kind: str = "number"
+
+    @property
+    def column(self) -> str:
+        """Name of its column in the table."""
+        return self.path
+
+    def quantile(self, probability: NDArray[np.float64]) -> list[Any]:
+        """Values that the input is below with the given probabilities.
+
+        Parameters
+        ----------
+        probability : (n,) array
+            Between 0 and 1.
+
+        Returns
+        -------
+        list of float or int
+            In SI units.
+        """
+        import numpy as np
+
+        # a sequence may touch 0, where a normal distribution has no value
+        inside = np.clip(probability, 1e-12, 1.0 - 1e-12)
+        values = DISTRIBUTIONS[self.distribution].quantile(inside, **self.parameters)
+        return [int(v) for v in values] if self.kind == "integer" else [float(v) for v in values]
+
+    def to_toml(self) -> Any:
+        """The axis as a study file has it."""
+        return {"distribution": self.distribution, **self.parameters}
+
+
+Axis = ListAxis | VariantAxis | DistributionAxis
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """How distributions are sampled.
+
+    Parameters
+    ----------
+    method : {"latin-hypercube", "sobol"}
+        Of `scipy.stats.qmc`; both scrambled by the seed.
+    count : int
+        Number of samples; a power of two for sobol.
+    seed : int
+        The same seed gives the same samples.
+    """
+
+    method: str
+    count: int
+    seed: int
+
+    def to_toml(self) -> dict[str, Any]:
+        """The section as a study file has it."""
+        return {"method": self.method, "count": self.count, "seed": self.seed}
+
+
+# --- distributions ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Distribution:
+    """Its parameters ("value" has the input's unit, "number" none) and its quantile function."""
+
+    parameters: Mapping[str, str]
+    quantile: Any
+    fault: Any  # of parameters: what is wrong, or None
+
+
+def _ordered(*names: str) -> Any:
+    def fault(**p: float) -> str | None:
+        values = [p[name] for name in names]
+        if any(a > b for a, b in zip(values, values[1:], strict=False)) or values[0] == values[-1]:
+            return f"{' < '.join(names)} is needed, found {', '.join(f'{v:g}' for v in values)}"
+        return None
+
+    return fault
+
+
+def _positive(*names: str) -> Any:
+    def fault(**p: float) -> str | None:
+        for name in names:
+            if not p[name] > 0.0:
+                return f"{name} must be over zero, found {p[name]:g}"
+        return None
+
+    return fault
+
+
+def _both(*faults: Any) -> Any:
+    return lambda **p: next((text for f in faults if (text := f(**p)) is not None), None)
+
+
+def _uniform(u: Any, low: float, high: float) -> Any:
+    return low + u * (high - low)
+
+
+def _loguniform(u: Any, low: float, high: float) -> Any:
+    return low * (high / low) ** u
+
+
+def _normal(u: Any, mean: float, standard_deviation: float) -> Any:
+    from scipy.special import ndtri
+
+    return mean + standard_deviation * ndtri(u)
+
+
+def _truncated_normal(
+    u: Any, mean: float, standard_deviation: float, low: float, high: float
+) -> Any:
+    from scipy.stats import truncnorm
+
+    a, b = (low - mean) / standard_deviation, (high - mean) / standard_deviation
+    return truncnorm.ppf(u, a, b, loc=mean, scale=standard_deviation)
+
+
+def _lognormal(u: Any, median: float, dispersion: float) -> Any:
+    import numpy as np
+    from scipy.special import ndtri
+
+    return median * np.exp(dispersion * ndtri(u))
+
+
+def _triangular(u: Any, low: float, mode: float, high: float) -> Any:
+    from scipy.stats import triang
+
+    return triang.ppf(u, (mode - low) / (high - low), loc=low, scale=high - low)
+
+
+def _integers(u: Any, low: float, high: float) -> Any:
+    import numpy as np
+
+    return np.minimum(np.floor(low + u * (high - low + 1.0)), high)
+
+
+DISTRIBUTIONS: Mapping[str, _Distribution] = {
+    "uniform": _Distribution(
+        {"low": "value", "high": "value"}, _uniform, _ordered("low", "high")
+    ),
+    "loguniform": _Distribution(
+        {"low": "value", "high": "value"},
+        _loguniform,
+        _both(_positive("low"), _ordered("low", "high")),
+    ),
+    "normal": _Distribution(
+        {"mean": "value", "standard_deviation": "value"},
+        _normal,
+        _positive("standard_deviation"),
+    ),
+    "truncated-normal": _Distribution(
+        {"mean": "value", "standard_deviation": "value", "low": "value", "high": "value"},
+        _truncated_normal,
+        _both(_positive("standard_deviation"), _ordered("low", "high")),
+    ),
+    "lognormal": _Distribution(
+        {"median": "value", "dispersion": "number"},
+        _lognormal,
+        _positive("median", "dispersion"),
+    ),
+    "triangular": _Distribution(
+        {"low": "value", "mode": "value", "high": "value"},
+        _triangular,
+        _ordered("low", "mode", "high"),
+    ),
+    "integers": _Distribution(
+        {"low": "value", "high": "value"}, _integers, _ordered("low", "high")
+    ),
+}
+"""By name: parameters in the input's unit, but the dispersion, the standard deviation of the
+logarithm."""
+
+
+def sampled(axes: Sequence[DistributionAxis], sampling: Sampling) -> dict[str, list[Any]]:
+    """Samples of the distributions.
+
+    Parameters
+    ----------
+    axes : sequence of DistributionAxis
+        One dimension each, in this order.
+    sampling : Sampling
+
+    Returns
+    -------
+    dict
+        For each path a list of `sampling.count` values in SI units.
+    """
+    import numpy as np
+    from scipy.stats import qmc
+
+    engine = {"latin-hypercube": qmc.LatinHypercube, "sobol": qmc.Sobol}[sampling.method]
+    generator = np.random.default_rng(sampling.seed)
+    try:
+        sampler = engine(d=len(axes), rng=generator)
+    except TypeError:  # SciPy before 1.15
+        sampler = engine(d=len(axes), seed=generator)
+    unit = sampler.random(sampling.count)
+    return {axis.path: axis.quantile(unit[:, k]) for k, axis in enumerate(axes)}
+
+
+# --- reading ------------------------------------------------------------------------------------
+
+
+def parse_axes(tables: Any, folder: Path, where: str) -> tuple[Axis, ...]:
+    """Read the section ``[axes]``.
+
+    Parameters
+    ----------
+    tables : mapping
+        Lists, lists of named variants and distributions by path.
+    folder : Path
+        What relative paths of files start from.
+    where : str
+        File and section for messages.
+
+    Raises
+    ------
+    InputError
+        Naming the axis, what was found and what to write.
+    """
+    if not isinstance(tables, Mapping):
+        raise InputError(f"{where}: must be a table, found {toml_type(tables)}")
+    axes: list[Axis] = []
+    taken: dict[str, str] = {}
+    for path, value in _flat(tables):
+        here = f"{where}.{path}"
+        axis = _axis(path, value, folder, here)
+        new = axis.paths if isinstance(axis, VariantAxis) else {axis.path}
+        if any(other.column == axis.column for other in axes):
+            raise InputError(f"{here}: there is an axis {axis.column} already; join their values")
+        for name in sorted(new):
+            if name in taken:
+                raise InputError(
+                    f"{here}: {name} is set by the axis {taken[name]} already; an input belongs "
+                    "to one axis"
+                )
+            taken[name] = axis.column
+        axes.append(axis)
+    return tuple(axes)
+
+
+def _flat(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Axes by their paths, whether these are written as one key or as tables in tables."""
+    for key, value in tables.items():
+        path = f"{prefix}{key}"
+        if isinstance(value, Mapping) and "distribution" not in value:
+            yield from _flat(value, f"{path}.")
+        else:
+            yield path, value
+
+
+def _axis(path: str, value: Any, folder: Path, where: str) -> Axis:
+    if isinstance(value, Mapping):
+        return _distribution_axis(path, value, where)
+    if not isinstance(value, list | tuple):
+        raise InputError(
+            f"{where}: must be a list of values, named variants or a distribution, found "
+            f"{toml_type(value)}; write e.g. [{shown(value)}]"
+        )
+    if not value:
+        raise InputError(f"{where}: the list is empty, so there is nothing to run")
+    if all(isinstance(item, Mapping) and "name" in item and "set" in item for item in value):
+        return _variant_axis(path, value, folder, where)
+    if all(isinstance(item, Mapping) and {"name", "set"} & set(item) for item in value):
+        raise InputError(
+            f'{where}: each variant needs name and set, as in name = "elastic", '
+            'set = { "support.hinge" = "elastic" }'
+        )
+    known = input_at(path, where)
+    values = [_value(known, item, folder, where) for item in value]
+    for k, one in enumerate(values):
+        if one in values[:k]:
+            raise InputError(f"{where}: the value {shown(value[k])} is there twice; take one out")
+    kind = known.kind
+    if kind == "any" and all(isinstance(item, str) for item in values):
+        kind = "text"
+    return ListAxis(path, tuple(values), kind)
+
+
+def _value(known: Input, value: Any, folder: Path, where: str) -> Any:
+    """A value in SI units, its path absolute."""
+    if isinstance(value, Path):
+        value = str(value)
+    value = known.in_si(value, where)
+    if known.path in _FILES and isinstance(value, str):
+        needs_ending = not known.path.endswith((".file", ".record", ".vertical"))
+        if not needs_ending or is_path(value):
+            return str((folder / value).absolute())
+    return value
+
+
+def _variant_axis(name: str, items: Sequence[Any], folder: Path, where: str) -> VariantAxis:
+    variants: list[Variant] = []
+    for item in items:
+        label, changes = item["name"], item["set"]
+        if not isinstance(label, str) or not label.strip():
+            raise InputError(f"{where}: a variant's name must be a text, found {toml_type(label)}")
+        here = f"{where}.{label}"
+        for key in item:
+            if key not in ("name", "set"):
+                raise InputError(f"{here}: unknown key {key}; {did_you_mean(key, ('name', 'set'))}")
+        if label in [variant.name for variant in variants]:
+            raise InputError(f"{where}: two variants are called {label}; names must differ")
+        if not isinstance(changes, Mapping):
+            raise InputError(
+                f"{here}.set: must be a table of paths and values, found {toml_type(changes)}; "
+                'write e.g. set = { "support.hinge" = "elastic" }'
+            )
+        known = {path: input_at(path, here) for path, _ in _leaves(changes)}
+        values = {path: _value(known[path], v, folder, here) for path, v in _leaves(changes)}
+        variants.append(Variant(label, values))
+    return VariantAxis(name, tuple(variants))
+
+
+def _leaves(changes: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in changes.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _distribution_axis(path: str, table: Mapping[str, Any], where: str) -> DistributionAxis:
+    known = input_at(path, where)
+    name = table["distribution"]
+    if not isinstance(name, str) or name not in DISTRIBUTIONS:
+        advice = did_you_mean(name if isinstance(name, str) else "", list(DISTRIBUTIONS))
+        raise InputError(f"{where}: unknown distribution {shown(name)}; {advice}")
+    if known.kind not in ("number", "integer"):
+        raise InputError(f"{where}: takes no numbers, so it has no distribution; write a list")
+    if (known.kind == "integer") != (name == "integers"):
+        wanted = "integers" if known.kind == "integer" else "one of real numbers"
+        raise InputError(f"{where}: the distribution must be {wanted}, found {shown(name)}")
+    wanted_parameters = DISTRIBUTIONS[name].parameters
+    given = [key for key in table if key != "distribution"]
+    for key in given:
+        if key not in wanted_parameters:
+            raise InputError(
+                f"{where}: unknown key {key}; {did_you_mean(key, list(wanted_parameters))}"
+            )
+    for key in wanted_parameters:
+        if key not in given:
+            raise InputError(f"{where}: {key} is missing; {name} has {_listed(wanted_parameters)}")
+    parameters: dict[str, float] = {}
+    for key, kind in wanted_parameters.items():
+        value, here = table[key], f"{where}.{key}"
+        if known.kind == "integer":
+            parameters[key] = known.in_si(value, here)
+        else:
+            dimension = known.dimension if kind == "value" else "number"
+            parameters[key] = to_si(value, dimension or "number", here)
+    fault = DISTRIBUTIONS[name].fault(**parameters)
+    if fault is not None:
+        raise InputError(f"{where}: {fault}")
+    return DistributionAxis(path, name, parameters, known.kind)
+
+
+def _listed(names: Mapping[str, Any]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def parse_sampling(table: Any, axes: Sequence[Axis], where: str) -> Sampling | None:
+    """Read the section ``[sampling]``.
+
+    Parameters
+    ----------
+    table : mapping or None
+        With ``method``, ``count`` and ``seed``.
+    axes : sequence of Axis
+        Of the study.
+    where : str
+        File and section for messages.
+
+    Raises
+    ------
+    InputError
+        If it is missing where distributions are to be sampled, there where none are, or wrong.
+    """
+    example = 'method = "latin-hypercube", count = 64, seed = 1'
+    wanted = [axis.path for axis in axes if isinstance(axis, DistributionAxis)]
+    if table is None:
+        if wanted:
+            raise InputError(f"{where}: is missing, {wanted[0]} is to be sampled; write {example}")
+        return None
+    if not isinstance(table, Mapping):
+        raise InputError(f"{where}: must be a table, found {toml_type(table)}; write {example}")
+    if not wanted:
+        raise InputError(f"{where}: no axis is a distribution, so there is nothing to sample")
+    known = ("method", "count", "seed")
+    for key in table:
+        if key not in known:
+            raise InputError(f"{where}: unknown key {key}; {did_you_mean(key, known)}")
+    method = table.get("method", METHODS[0])
+    if method not in METHODS:
+        advice = did_you_mean(method if isinstance(method, str) else "", METHODS)
+        raise InputError(f"{where}.method: unknown method {shown(method)}; {advice}")
+    numbers = {"count": table.get("count"), "seed": table.get("seed", 0)}
+    for key, least, most in (("count", 1, MOST_SAMPLES), ("seed", 0, 2**63 - 1)):
+        value = numbers[key]
+        whole = isinstance(value, int) and not isinstance(value, bool)
+        if not whole or not least <= value <= most:  # type: ignore[operator]
+            found = "nothing" if value is None else shown(value)
+            raise InputError(
+                f"{where}.{key}: must be a whole number from {least} to {most}, found {found}"
+            )
+    count = int(numbers["count"] or 0)
+    if method == "sobol" and count & (count - 1):
+        below = 2 ** int(math.log2(count))
+        raise InputError(
+            f"{where}.count: must be a power of two for sobol, found {count}; take {below} or "
+            f"{2 * below}"
+        )
+    return Sampling(method, count, int(numbers["seed"] or 0))
