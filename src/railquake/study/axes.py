@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -223,7 +224,7 @@ class _Distribution:
 def _ordered(*names: str) -> Any:
     def fault(**p: float) -> str | None:
         values = [p[name] for name in names]
-        if any(a > b for a, b in zip(values, values[1:], strict=False)) or values[0] == values[-1]:
+        if any(a > b for a, b in pairwise(values)) or values[0] == values[-1]:
             return f"{' < '.join(names)} is needed, found {', '.join(f'{v:g}' for v in values)}"
         return None
 
@@ -287,9 +288,7 @@ def _integers(u: Any, low: float, high: float) -> Any:
 
 
 DISTRIBUTIONS: Mapping[str, _Distribution] = {
-    "uniform": _Distribution(
-        {"low": "value", "high": "value"}, _uniform, _ordered("low", "high")
-    ),
+    "uniform": _Distribution({"low": "value", "high": "value"}, _uniform, _ordered("low", "high")),
     "loguniform": _Distribution(
         {"low": "value", "high": "value"},
         _loguniform,
@@ -551,7 +550,7 @@ def parse_sampling(table: Any, axes: Sequence[Axis], where: str) -> Sampling | N
     for key, least, most in (("count", 1, MOST_SAMPLES), ("seed", 0, 2**63 - 1)):
         value = numbers[key]
         whole = isinstance(value, int) and not isinstance(value, bool)
-        if not whole or not least <= value <= most:  # type: ignore[operator]
+        if not whole or not least <= value <= most:
             found = "nothing" if value is None else shown(value)
             raise InputError(
                 f"{where}.{key}: must be a whole number from {least} to {most}, found {found}"

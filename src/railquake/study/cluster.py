@@ -7,6 +7,7 @@ import socket
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from typing import Any
 from urllib.parse import urlsplit
 
 from railquake.errors import InputError
@@ -18,9 +19,7 @@ RETRIES = 3  # of a batch whose worker died
 
 
 @contextmanager
-def cluster_executor(
-    address: str, say: Callable[[str], None]
-) -> Iterator[tuple[Executor, int]]:
+def cluster_executor(address: str, say: Callable[[str], None]) -> Iterator[tuple[Executor, int]]:
     """Executor on the workers of a scheduler, and the number of their threads.
 
     Parameters
@@ -45,7 +44,7 @@ def cluster_executor(
             f'--scheduler: must be an address such as tcp://host:8786, found "{address}"'
         )
     try:
-        from distributed import Client
+        import distributed
     except ImportError:
         raise InputError(
             "--scheduler: needs Dask's distributed; install railquake[cluster]"
@@ -59,7 +58,8 @@ def cluster_executor(
         ) from None
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # one line says it all
     try:
-        client = Client(address, timeout=PATIENCE_S, set_as_default=False)
+        connect: Any = distributed.Client
+        client = connect(address, timeout=PATIENCE_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise InputError(
             f"--scheduler: what answers at {address} is no Dask scheduler ({_first_line(error)})"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -51,8 +50,10 @@ class Point:
         Factor on the motion, all told.
     member : int
         Number of its motion in the suite.
-    motion_changes : dict
-        What axes change of the motion, by path.
+    motion : mapping
+        Its table, without the scale.
+    motion_key : str
+        Tells motions of a member apart that axes have changed.
     changes : dict
         What they change elsewhere.
     labels : dict
@@ -64,7 +65,8 @@ class Point:
     level: str | None
     scale: float
     member: int
-    motion_changes: dict[str, Any]
+    motion: Mapping[str, Any]
+    motion_key: str
     changes: dict[str, Any]
     labels: dict[str, Any]
 
@@ -105,7 +107,7 @@ class Design:
         self.grid = [axis for axis in study.axes if not isinstance(axis, DistributionAxis)]
         self.drawn = [axis for axis in study.axes if isinstance(axis, DistributionAxis)]
         self.samples = study.sampling.count if study.sampling is not None else 1
-        self._moves = any(path.startswith("motion.") for path in self._paths())
+        self._moves = any(map(_is_motion, self._paths()))
         self._sections: OrderedDict[tuple[str, str], tuple[Any, str]] = OrderedDict()
         self._motions: OrderedDict[tuple[int, str], Motion | None] = OrderedDict()
         self._lock = Lock()
@@ -156,19 +158,17 @@ class Design:
         for drawn in self.drawn:
             changes[drawn.path] = labels[drawn.column] = self._drawn_values[drawn.path][sample]
         own = member.scale_factor
-        record, motion_changes = member.name, {}
+        record, table, key = member.name, member.motion, ""
         if self._moves:
             if "motion.scale" in changes:
                 scale = changes.pop("motion.scale")
                 own = scale if self.study.suite is None else own * scale
-            for path in [path for path in changes if path.startswith("motion.")]:
-                motion_changes[path] = changes.pop(path)
-            if motion_changes:
-                table = with_overrides({"motion": member.motion}, motion_changes)["motion"]
+            changed = {path: changes.pop(path) for path in list(changes) if _is_motion(path)}
+            if changed:
+                key = repr(changed)
+                table = with_overrides({"motion": table}, changed)["motion"]
                 record = _motion_name(table) if self.study.suite is None else record
-        return Point(
-            row, record, level, own * factor, member_index, motion_changes, changes, labels
-        )
+        return Point(row, record, level, own * factor, member_index, table, key, changes, labels)
 
     def scenario(self, point: Point) -> Scenario:
         """The scenario of a run.
@@ -222,7 +222,7 @@ class Design:
 
     def _section(self, key: str, changes: Mapping[str, Any]) -> tuple[Any, str]:
         """A part of the base case with some changes and its fingerprint, made once."""
-        name = (key, json.dumps(changes, default=str))
+        name = (key, repr(changes))
         with self._lock:
             if name in self._sections:
                 self._sections.move_to_end(name)
@@ -236,28 +236,22 @@ class Design:
 
     def _motion(self, point: Point) -> Motion | None:
         """A member's motion with an axis's changes, validated once."""
-        name = (point.member, json.dumps(point.motion_changes, default=str))
+        name = (point.member, point.motion_key)
         with self._lock:
             if name in self._motions:
                 return self._motions[name]
-        member = self.members[point.member]
-        table = dict(member.motion)
-        if point.motion_changes:
-            table = with_overrides({"motion": table}, point.motion_changes)["motion"]
         where = f"{self.where}: motion"
         if self.study.suite is not None:
-            where = f"{self.where}: suite: {member.name}"
-        motion = validated(Motion, table, where) if table else None
+            where = f"{self.where}: suite: {point.record}"
+        motion = validated(Motion, point.motion, where) if point.motion else None
         _remember(self._motions, name, motion, self._lock)
         return motion
 
     def _in_full(self, point: Point) -> Scenario:
         tables = dict(self._base)
-        motion = self.members[point.member].motion
-        if motion:
-            tables["motion"] = {**motion, "scale": point.scale}
-        changes = {**point.changes, **point.motion_changes}
-        return scenario_from_dict(tables, overrides=changes, where=f"{self.where}: base")
+        if point.motion:
+            tables["motion"] = {**point.motion, "scale": point.scale}
+        return scenario_from_dict(tables, overrides=point.changes, where=f"{self.where}: base")
 
     def check(self) -> None:
         """Refuse a design of which some run is wrong, before anything runs.
@@ -298,6 +292,10 @@ class Design:
                     raise
                 name = self.members[member].name
                 raise InputError(f"{self.where}: suite: {name}: {error}") from None
+
+
+def _is_motion(path: str) -> bool:
+    return path.startswith("motion.")
 
 
 def _remember(store: OrderedDict[Any, Any], key: Any, value: Any, lock: Lock) -> None:

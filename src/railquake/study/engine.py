@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Batch", "StudyProgress", "parse_shard", "run_batch", "run_study"]
 
+Ended = list[tuple[int, dict[str, Any]]]
+"""Rows that have ended, and their measures."""
 STEPS_A_BATCH = 40e6  # about eight seconds of one processor
 LEAST_BATCH, LARGEST_BATCH = 16, 256  # runs
 BLOCK = 32  # assemblies of car, support and track that are worked on at a time
@@ -101,7 +103,9 @@ def _keep_design(key: str, design: Design) -> Design:
     return design
 
 
-def run_batch(batch: Batch, stop: threading.Event | None = None) -> list[tuple[int, dict[str, Any]]]:
+def run_batch(
+    batch: Batch, stop: threading.Event | None = None
+) -> list[tuple[int, dict[str, Any]]]:
     """Run some rows of a study in lockstep, on this thread.
 
     Parameters
@@ -188,8 +192,8 @@ def _plan(design: Design, rows: range, done: dict[int, str | None], workers: int
     twins: dict[int, list[int]] = {}
     steps: dict[int, float] = {}
     failed: dict[int, str] = {}
-    lanes: dict[Any, int] = {}
-    assemblies: dict[Any, int] = {}
+    kernels: dict[Any, int] = {}
+    assemblies: dict[tuple[str, ...], tuple[int, int]] = {}  # kernel, number
     found: list[tuple[int, int, int]] = []  # kernel, assembly, row
     for row in rows:
         try:
@@ -207,12 +211,13 @@ def _plan(design: Design, rows: range, done: dict[int, str | None], workers: int
             continue
         first[key] = row
         steps[row] = length
-        kernel = lanes.setdefault(_lane_key(scenario), len(lanes))
-        found.append((kernel, assemblies.setdefault((kernel, parts), len(assemblies)), row))
+        if parts not in assemblies:
+            kernel = kernels.setdefault(_lane_key(scenario), len(kernels))
+            assemblies[parts] = kernel, len(assemblies)
+        found.append((*assemblies[parts], row))
     # similar assemblies are worked on together, so that each is made once
-    numbers = {k: n for n, k in enumerate(sorted(assemblies.items(), key=lambda i: (i[0][0], i[1])))}
-    place = {assembly: n for (_, assembly), n in numbers.items()}
-    block = {row: place[assembly] // BLOCK for _, assembly, row in found}
+    place = {number: at for at, (_, number) in enumerate(sorted(assemblies.values()))}
+    block = {row: place[number] // BLOCK for _, number, row in found}
     found.sort(key=lambda f: (f[0], block[f[2]], -steps[f[2]], f[1], f[2]))
     batches: list[tuple[int, ...]] = []
     share = max(8, math.ceil(len(found) / max(4 * workers, 1) / 8) * 8)
@@ -395,7 +400,7 @@ def hardest(design: Design) -> list[Scenario]:
     velocities: dict[Any, float] = {}
     for row in range(design.size):
         point = design.point(row)
-        motion = (point.member, repr(point.motion_changes))
+        motion = (point.member, point.motion_key)
         try:
             scenario = design.scenario(point)
             if motion not in velocities:
@@ -456,7 +461,7 @@ def _run_all(
     keeper.take([(row, {"status": "failed", "error": e}) for row, e in work.failed.items()])
     task = run_batch if stop is None else partial(run_batch, stop=stop)
     waiting = iter(batches)
-    running: set[Future[list[tuple[int, dict[str, Any]]]]] = set()
+    running: set[Future[Ended]] = set()
     try:
         while True:
             while len(running) < 2 * workers and (batch := next(waiting, None)) is not None:
@@ -478,7 +483,7 @@ def _run_all(
 
 
 def _wind_down(
-    running: set[Future[list[tuple[int, dict[str, Any]]]]],
+    running: set[Future[Ended]],
     stop: threading.Event | None,
     keeper: _Keeper,
 ) -> None:
@@ -517,7 +522,7 @@ class _Keeper:
         self.former = self.total - len(work.failed) - len(work.steps)
         self.former -= sum(map(len, work.twins.values()))
 
-    def take(self, results: Iterable[tuple[int, dict[str, Any]]]) -> None:
+    def take(self, results: Ended) -> None:
         """Take the measures of some rows; those of the same scenario have the same."""
         for row, measures in results:
             self.left -= self.work.steps.get(row, 0.0)
@@ -530,9 +535,7 @@ class _Keeper:
             worked = self.all_steps - self.left
             remaining = passed * self.left / worked if worked > 0.0 else None
             self.progress(
-                StudyProgress(
-                    self.former + self.ended, self.total, self.ended / passed, remaining
-                )
+                StudyProgress(self.former + self.ended, self.total, self.ended / passed, remaining)
             )
 
     def flush(self, all_of_it: bool = False) -> None:

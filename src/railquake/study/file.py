@@ -16,7 +16,6 @@ from railquake.inputs.presets import KINDS, with_absolute_paths
 from railquake.inputs.scenario import Scenario
 from railquake.inputs.units import shown
 from railquake.study.axes import (
-    Axis,
     ListAxis,
     Sampling,
     VariantAxis,
@@ -323,7 +322,9 @@ def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:
     sections = list(Scenario.model_fields)
     for key, table in tables.items():
         if key not in sections:
-            raise InputError(f"{where}.{key}: unknown key; {did_you_mean(key, ['case', *sections])}")
+            raise InputError(
+                f"{where}.{key}: unknown key; {did_you_mean(key, ['case', *sections])}"
+            )
         if not isinstance(table, Mapping):
             raise InputError(f"{where}.{key}: must be a table, found {toml_type(table)}")
     tables = _absolute(tables, folder)
@@ -360,7 +361,9 @@ def _suite(suite: Suite | str | Path | None, folder: Path) -> Suite | str | None
 def _levels(levels: Any, where: str) -> dict[str, float]:
     example = 'write e.g. levels = { "50%" = 0.21, "5%" = 1.0 }'
     if not isinstance(levels, Mapping):
-        raise InputError(f"{where}: must be a table of factors, found {toml_type(levels)}; {example}")
+        raise InputError(
+            f"{where}: must be a table of factors, found {toml_type(levels)}; {example}"
+        )
     found: dict[str, float] = {}
     for name, factor in levels.items():
         number = isinstance(factor, int | float) and not isinstance(factor, bool)
@@ -381,7 +384,8 @@ def _members(items: Any, name: Any, where: str) -> Suite:
             )
         except (KeyError, TypeError, ValueError):
             raise InputError(
-                f"{where}.members: each needs name, motion and scale_factor, found {toml_type(item)}"
+                f"{where}.members: each needs name, motion and scale_factor, found "
+                + toml_type(item)
             ) from None
         members.append(member)
     return Suite(str(name), tuple(members))

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -106,7 +107,9 @@ def _pandas(name: str, kind: str) -> str:
     return {"int64": "Int64", "bool": "boolean", "string": "object"}[kind]
 
 
-def table_row(point: Point, scenario_hash: str | None, measures: Mapping[str, Any]) -> dict[str, Any]:
+def table_row(
+    point: Point, scenario_hash: str | None, measures: Mapping[str, Any]
+) -> dict[str, Any]:
     """One row of the table.
 
     Parameters
@@ -168,6 +171,20 @@ def _read_parquet(path: Path) -> pa.Table:
         return pq.read_table(file, page_checksum_verification=True)
 
 
+def _writable(folder: Path) -> None:
+    """Make sure, before a long run, that the folder can be made and written to."""
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise InputError(f"--out {folder}: is no folder; name a folder")
+    there = folder.absolute()
+    while not os.path.lexists(there):
+        there = there.parent
+    try:
+        with tempfile.TemporaryFile(dir=there):
+            pass
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot be written: {_reason(error)}") from None
+
+
 def _reason(error: OSError) -> str:
     return error.strerror or str(error)
 
@@ -198,9 +215,8 @@ class ResultsFolder:
             If it holds another study, or something else, or cannot be written.
         """
         from railquake import __version__
-        from railquake.output import prepare_folder
 
-        prepare_folder(self.path)
+        _writable(self.path)
         file = self.path / STUDY_FILE
         tables = {"railquake": __version__, **study.to_dict()}
         if file.exists():
@@ -327,7 +343,7 @@ class ResultsFolder:
             names = self.names()
             table = keep(self.load(schema, lambda _: None, names))
             try:
-                _replace(self.path / TABLE_FILE, lambda path: _write_parquet(table, path))
+                _replace(self.path / TABLE_FILE, partial(_write_parquet, table))
             except OSError as error:
                 raise InputError(
                     f"{self.path / TABLE_FILE}: cannot be written: {_reason(error)}; all rows are "
@@ -589,7 +605,7 @@ def merge_results(
         found = source.load(schema, say)
         try:
             name = f"from-{source.path.resolve().name}-{uuid.uuid4().hex}.parquet"
-            _replace(target.parts / name, lambda path, t=found: _write_parquet(t, path))  # type: ignore[misc]
+            _replace(target.parts / name, partial(_write_parquet, found))
             if step is not None and target.time_step() is None:
                 target.note_time_step(
                     json.loads((source.path / TIME_STEP_FILE).read_text(encoding="utf-8"))
