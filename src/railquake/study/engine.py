@@ -9,9 +9,15 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    wait,
+)
 from concurrent.futures import ThreadPoolExecutor as Threads
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
@@ -22,7 +28,7 @@ from railquake.errors import InputError
 from railquake.lockstep import REFRESH_STEPS, _Batch, _group, _run
 from railquake.physics.kernel import LOCKSTEP
 from railquake.study.design import Design
-from railquake.study.results import ResultsFolder, table_row, table_schema, to_pandas
+from railquake.study.results import ResultsFolder, no_note, table_row, table_schema, to_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -185,7 +191,7 @@ class _Work:
     failed: dict[int, str]  # rows of which no scenario can be made, and why
 
 
-def _plan(design: Design, rows: range, done: dict[int, str | None], workers: int) -> _Work:
+def _plan(design: Design, rows: range, done: set[tuple[int, str | None]], workers: int) -> _Work:
     """Group what is left into batches whose runs share a kernel and are of similar length."""
     hashes: list[str | None] = []
     first: dict[str, int] = {}
@@ -204,7 +210,7 @@ def _plan(design: Design, rows: range, done: dict[int, str | None], workers: int
             failed[row] = str(error)
             continue
         hashes.append(key)
-        if row in done and done[row] == key:
+        if (row, key) in done:
             continue
         if key in first:
             twins.setdefault(first[key], []).append(row)
@@ -264,10 +270,6 @@ def _lane_key(scenario: Scenario) -> tuple[Any, ...]:
 # --- running ------------------------------------------------------------------------------------
 
 
-def no_note(_: str) -> None:
-    """Say nothing."""
-
-
 def run_study(
     study: Study,
     out: Path,
@@ -303,43 +305,27 @@ def run_study(
         if step is not None:
             design = Design(study, step)
         rows = range(number - 1, design.size, count)
-        table = folder.load(schema, say)
-        done = _finished(table)
-        work = _plan(design, rows, done, workers)
+        work = _plan(design, rows, _finished(folder.load(schema, say)), workers)
         key = f"{out.resolve()}:{os.getpid()}:{time.monotonic_ns()}"
-        _keep_design(key, design)
         batches = [Batch(key, study, step, batch) for batch in work.batches]
         if stop is not None and batches:
             _compile(design, work, say)
-        with suppress_design(key):
+        with _kept_design(key, design):
             _run_all(pool, workers, stop, batches, work, design, folder, schema, progress)
-    wanted = dict(zip(rows, work.hashes, strict=True)) if count == 1 else {}
-
-    def keep(found: pa.Table) -> pa.Table:
-        """Without rows of an older state of the study's files."""
-        if not wanted:
-            return found
-        numbers, hashes = found.column("row").to_pylist(), found.column("scenario_hash").to_pylist()
-        return found.filter(pa.array([wanted.get(r, "") == h for r, h in zip(numbers, hashes)]))  # noqa: B905
-
-    whole = folder.write_table(schema, keep)
+    whole = folder.write_table(schema, dict(zip(rows, work.hashes, strict=True)))
     if count > 1:
         whole = whole.filter(pc.is_in(whole.column("row"), pa.array(list(rows), pa.int64())))
     return to_pandas(whole)
 
 
-def _finished(table: pa.Table) -> dict[int, str | None]:
-    """Rows that need not be run again, and the hashes of their scenarios."""
-    rows, hashes, status = (
-        table.column(name).to_pylist() for name in ("row", "scenario_hash", "status")
-    )
-    return {
-        row: key for row, key, state in zip(rows, hashes, status, strict=True) if state != "failed"
-    }
+def _finished(table: pa.Table) -> set[tuple[int, str | None]]:
+    """Rows that need not be run again, with the hashes of their scenarios."""
+    columns = (table.column(name).to_pylist() for name in ("row", "scenario_hash", "status"))
+    return {(row, key) for row, key, state in zip(*columns, strict=True) if state != "failed"}
 
 
 @contextmanager
-def suppress_design(key: str) -> Iterator[None]:
+def _kept_design(key: str, design: Design) -> Iterator[None]:
     """Forget a design afterwards."""
     try:
         yield
@@ -457,7 +443,7 @@ def _run_all(
     progress: Callable[[StudyProgress], None] | None,
 ) -> None:
     """Run all batches; keep what has finished, whatever happens."""
-    keeper = _Keeper(work, design, folder, schema, progress)
+    keeper = _Keeper(work, design, folder, schema)
     keeper.take([(row, {"status": "failed", "error": e}) for row, e in work.failed.items()])
     task = run_batch if stop is None else partial(run_batch, stop=stop)
     waiting = iter(batches)
@@ -466,36 +452,35 @@ def _run_all(
         while True:
             while len(running) < 2 * workers and (batch := next(waiting, None)) is not None:
                 running.add(pool.submit(task, batch))
+            if progress is not None:
+                progress(keeper.progress())
             if not running:
                 break
-            ended, running = wait(running, return_when=FIRST_COMPLETED)
-            for future in ended:
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
                 keeper.take(future.result())
+                running.remove(future)
             keeper.flush()
-    except (CancelledError, BrokenProcessPool, OSError) as error:
+    except (CancelledError, BrokenExecutor, OSError) as error:
         raise InputError(
-            f"study: the workers are gone ({type(error).__name__}); {keeper.kept} rows are kept: "
-            "run the same command again to go on"
+            f"study: the workers are gone ({type(error).__name__}); finished rows are kept: run "
+            "the same command again to go on"
         ) from None
     finally:
-        _wind_down(running, stop, keeper)
-        keeper.flush(all_of_it=True)
+        try:
+            _wind_down(running, stop, keeper)
+        finally:
+            keeper.flush(all_of_it=True)
 
 
-def _wind_down(
-    running: set[Future[Ended]],
-    stop: threading.Event | None,
-    keeper: _Keeper,
-) -> None:
+def _wind_down(running: set[Future[Ended]], stop: threading.Event | None, keeper: _Keeper) -> None:
     """Stop what runs; what it has finished is kept."""
-    if stop is not None:
-        stop.set()
     for future in running:
         future.cancel()
-    if stop is None:
-        return  # on other machines, batches end by themselves
-    for future in wait(running).done if running else ():
-        if not future.cancelled() and future.exception() is None:
+    if stop is not None:
+        stop.set()
+        wait(running)  # of other machines, nobody knows when they hear of it
+    for future in running:
+        if future.done() and not future.cancelled() and future.exception() is None:
             keeper.take(future.result())
 
 
@@ -508,12 +493,9 @@ class _Keeper:
         design: Design,
         folder: ResultsFolder,
         schema: pa.Schema,
-        progress: Callable[[StudyProgress], None] | None,
     ) -> None:
         self.work, self.design, self.folder, self.schema = work, design, folder, schema
-        self.progress = progress
         self.rows: list[dict[str, Any]] = []
-        self.kept = 0
         self.ended = 0
         self.begin = self.flushed = time.monotonic()
         self.left = sum(work.steps.values())
@@ -530,13 +512,13 @@ class _Keeper:
                 key = self.work.hashes[(twin - self.work.rows.start) // self.work.rows.step]
                 self.rows.append(table_row(self.design.point(twin), key, measures))
                 self.ended += 1
-        if self.progress is not None:
-            passed = max(time.monotonic() - self.begin, 1e-9)
-            worked = self.all_steps - self.left
-            remaining = passed * self.left / worked if worked > 0.0 else None
-            self.progress(
-                StudyProgress(self.former + self.ended, self.total, self.ended / passed, remaining)
-            )
+
+    def progress(self) -> StudyProgress:
+        """How far the study is."""
+        passed = max(time.monotonic() - self.begin, 1e-9)
+        worked = self.all_steps - self.left
+        remaining = passed * self.left / worked if worked > 0.0 else None
+        return StudyProgress(self.former + self.ended, self.total, self.ended / passed, remaining)
 
     def flush(self, all_of_it: bool = False) -> None:
         """Write a part, if it is time."""
@@ -546,5 +528,4 @@ class _Keeper:
             return
         rows, self.rows = self.rows, []
         self.folder.add(rows, self.schema)
-        self.kept += len(rows)
         self.flushed = now

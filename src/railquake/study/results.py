@@ -281,16 +281,18 @@ class ResultsFolder:
         self.kept += len(rows)
 
     def names(self) -> list[str]:
-        """Names of the parts."""
+        """Names of the parts, the oldest first."""
+        found = []
         with suppress(FileNotFoundError):
-            return sorted(p.name for p in self.parts.iterdir() if p.name.endswith(".parquet")
-                          and not p.name.startswith("."))  # fmt: skip
-        return []
+            for path in self.parts.iterdir():
+                if path.suffix == ".parquet" and not path.name.startswith("."):
+                    found.append((path.stat().st_mtime_ns, path.name))
+        return [name for _, name in sorted(found)]
 
     def load(
         self, schema: pa.Schema, notify: Callable[[str], None], names: Iterable[str] | None = None
     ) -> pa.Table:
-        """All finished rows, each once, in the design's order.
+        """All rows of all parts, as they come.
 
         A part that is damaged is reported and set aside; its rows count as not finished.
 
@@ -302,7 +304,6 @@ class ResultsFolder:
         names : iterable of str, optional
             Parts to read; all by default.
         """
-        import numpy as np
         import pyarrow as pa
 
         tables = [schema.empty_table()]
@@ -311,28 +312,27 @@ class ResultsFolder:
             try:
                 found = _read_parquet(path)
                 tables.append(found.select(schema.names).cast(schema))
-            except (pa.ArrowException, OSError, KeyError, ValueError) as error:
-                if isinstance(error, FileNotFoundError):
-                    continue
+            except FileNotFoundError:
+                continue
+            except (pa.ArrowException, OSError, KeyError, ValueError):
                 notify(f"{path}: truncated or damaged; its rows are computed again")
                 with suppress(OSError):
                     path.replace(path.with_suffix(".damaged"))
-        table = pa.concat_tables(tables)
-        if not table.num_rows:
-            return table
-        rows = table.column("row").to_numpy()
-        status = table.column("status").to_numpy(zero_copy_only=False)
-        failed = (status == "failed").astype(np.int64)
-        # of a row that is there twice, one that did not fail
-        order = np.lexsort((failed, rows))
-        first = np.ones(len(order), dtype=bool)
-        first[1:] = rows[order][1:] != rows[order][:-1]
-        return table.take(pa.array(order[first])).combine_chunks()
+        return pa.concat_tables(tables)
 
-    def write_table(self, schema: pa.Schema, keep: Callable[[pa.Table], pa.Table]) -> pa.Table:
+    def write_table(
+        self, schema: pa.Schema, hashes: Mapping[int, str | None] | None = None
+    ) -> pa.Table:
         """Write ``runs.parquet`` from all parts; what it holds.
 
         Another shard may add a part meanwhile: then it is written again.
+
+        Parameters
+        ----------
+        schema : pyarrow.Schema
+            Of the study.
+        hashes : mapping, optional
+            See `distinct`.
 
         Raises
         ------
@@ -341,7 +341,7 @@ class ResultsFolder:
         """
         while True:
             names = self.names()
-            table = keep(self.load(schema, lambda _: None, names))
+            table = distinct(self.load(schema, no_note, names), hashes)
             try:
                 _replace(self.path / TABLE_FILE, partial(_write_parquet, table))
             except OSError as error:
@@ -387,6 +387,40 @@ class ResultsFolder:
         found = self.time_step()
         assert found is not None  # it has just been written
         return found
+
+
+def distinct(table: pa.Table, hashes: Mapping[int, str | None] | None = None) -> pa.Table:
+    """Each row once, in the design's order.
+
+    Of rows that are there twice, one that did not fail; of these the last.
+
+    Parameters
+    ----------
+    table : pyarrow.Table
+        Of `ResultsFolder.load`.
+    hashes : mapping, optional
+        Hashes that rows must have: others stem from an older state of the study's files.
+    """
+    import numpy as np
+    import pyarrow as pa
+
+    if hashes is not None:
+        pairs = zip(
+            table.column("row").to_pylist(), table.column("scenario_hash").to_pylist(), strict=True
+        )
+        table = table.filter(pa.array([hashes.get(r, h) == h for r, h in pairs], pa.bool_()))
+    if not table.num_rows:
+        return table
+    rows = table.column("row").to_numpy()
+    failed = table.column("status").to_numpy() == "failed"
+    order = np.lexsort((-np.arange(len(rows)), failed, rows))
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = rows[order][1:] != rows[order][:-1]
+    return table.take(pa.array(order[first])).combine_chunks()
+
+
+def no_note(_: str) -> None:
+    """Say nothing."""
 
 
 def _write_text(path: Path, text: str) -> None:
@@ -466,7 +500,7 @@ class StudyResults:
         schema = table_schema(self.design)
         file = self.folder / TABLE_FILE
         if not file.exists():
-            return to_pandas(ResultsFolder(self.folder).load(schema, lambda _: None))
+            return to_pandas(distinct(ResultsFolder(self.folder).load(schema, no_note)))
         import pyarrow as pa
 
         try:
@@ -585,8 +619,6 @@ def merge_results(
     InputError
         If a folder holds no study, or another one.
     """
-    from railquake.study.engine import no_note
-
     say = notify or no_note
     if not folders:
         raise InputError("merge: give the folders of the shards")
@@ -602,7 +634,7 @@ def merge_results(
         if target.path.resolve() == source.path.resolve():
             continue
         schema = table_schema(results.design)
-        found = source.load(schema, say)
+        found = distinct(source.load(schema, say))
         try:
             name = f"from-{source.path.resolve().name}-{uuid.uuid4().hex}.parquet"
             _replace(target.parts / name, partial(_write_parquet, found))
@@ -613,7 +645,7 @@ def merge_results(
         except OSError as error:
             raise InputError(f"--out {out}: cannot be written: {_reason(error)}") from None
     merged = open_results(out)
-    target.write_table(table_schema(merged.design), lambda table: table)
+    target.write_table(table_schema(merged.design))
     if merged.missing:
         say(f"{merged.missing} of {merged.design.size} rows are missing")
     return merged

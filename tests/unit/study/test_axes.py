@@ -78,7 +78,7 @@ def test_samples_follow_their_distribution(distribution, parameters, reference):
 
 def test_parameters_take_units():
     values = drawn("vehicle.speed", "uniform", low="36 km/h", high="72 km/h")
-    assert 10.0 <= values.min() and values.max() <= 20.0
+    assert values.min() >= 10.0 and values.max() <= 20.0
 
 
 def test_whole_numbers_are_drawn_with_their_ends():
