@@ -35,8 +35,8 @@ def small() -> dict[str, Any]:
             "name": "two",
             "levels": {"low": 0.5, "high": 1.5},
             "members": [
-                {"name": name, "scale_factor": factor, "motion": {"synthetic": {**MOTION, "seed": k}}}
-                for k, (name, factor) in enumerate((("a", 1.0), ("b", 2.0)))
+                {"name": "a", "scale_factor": 1.0, "motion": {"synthetic": {**MOTION, "seed": 0}}},
+                {"name": "b", "scale_factor": 2.0, "motion": {"synthetic": {**MOTION, "seed": 1}}},
             ],
         },
         "axes": {"model": MODELS},

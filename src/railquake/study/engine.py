@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import os
-import re
 import threading
 import time
-from collections import OrderedDict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
@@ -25,25 +22,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import REFRESH_STEPS, _Batch, _group, _run
+from railquake.lockstep import REFRESH_STEPS, _Batch, _group
 from railquake.physics.kernel import LOCKSTEP
+from railquake.study.batches import Batch, Ended, kept_design, run_batch
 from railquake.study.design import Design
-from railquake.study.results import ResultsFolder, no_note, table_row, table_schema, to_pandas
+from railquake.study.folder import ResultsFolder, no_note
+from railquake.study.plan import Work, hardest, kernel_key, parse_shard, plan
+from railquake.study.table import table_row, table_schema, to_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-    from railquake.inputs.scenario import Scenario
     from railquake.study.file import Study
 
-__all__ = ["Batch", "StudyProgress", "parse_shard", "run_batch", "run_study"]
+__all__ = ["StudyProgress", "run_study"]
 
-Ended = list[tuple[int, dict[str, Any]]]
-"""Rows that have ended, and their measures."""
-STEPS_A_BATCH = 40e6  # about eight seconds of one processor
-LEAST_BATCH, LARGEST_BATCH = 16, 256  # runs
-BLOCK = 32  # assemblies of car, support and track that are worked on at a time
 FLUSH_S = 2.0  # between two parts
 FLUSH_ROWS = 2048
 
@@ -66,208 +60,6 @@ class StudyProgress:
     total: int
     runs_per_s: float
     remaining_s: float | None
-
-
-@dataclass(frozen=True)
-class Batch:
-    """Work for one task: some rows of a study.
-
-    Attributes
-    ----------
-    key : str
-        Tells studies apart within a process.
-    study : Study
-        Its suite loaded.
-    time_step : float or None
-        Where the study leaves it open, s.
-    rows : tuple of int
-    """
-
-    key: str
-    study: Study
-    time_step: float | None
-    rows: tuple[int, ...]
-
-
-_DESIGNS: OrderedDict[str, Design] = OrderedDict()
-_DESIGNS_MOST = 4
-_DESIGNS_LOCK = threading.Lock()
-
-
-def _design_of(batch: Batch) -> Design:
-    with _DESIGNS_LOCK:
-        known = _DESIGNS.get(batch.key)
-    return known or _keep_design(batch.key, Design(batch.study, batch.time_step))
-
-
-def _keep_design(key: str, design: Design) -> Design:
-    with _DESIGNS_LOCK:
-        _DESIGNS[key] = design
-        _DESIGNS.move_to_end(key)
-        while len(_DESIGNS) > _DESIGNS_MOST:
-            _DESIGNS.popitem(last=False)
-    return design
-
-
-def run_batch(
-    batch: Batch, stop: threading.Event | None = None
-) -> list[tuple[int, dict[str, Any]]]:
-    """Run some rows of a study in lockstep, on this thread.
-
-    Parameters
-    ----------
-    batch : Batch
-    stop : threading.Event, optional
-        Once it is set, what has finished is returned.
-
-    Returns
-    -------
-    list of (int, dict)
-        Row and measures.  A run that cannot be made has the status ``failed`` and its ``error``.
-    """
-    stop = threading.Event() if stop is None else stop
-    design = _design_of(batch)
-    done: dict[int, dict[str, Any]] = {}
-
-    def scenarios(rows: Sequence[int]) -> Iterator[tuple[int, Scenario]]:
-        for row in rows:
-            if stop.is_set():
-                return
-            try:
-                yield row, design.scenario(design.point(row))
-            except InputError as error:
-                done[row] = {"status": "failed", "error": str(error)}
-
-    try:
-        for row, measures in _run(scenarios(batch.rows), REFRESH_STEPS, stop):
-            done[row] = measures
-    except Exception:
-        # one of them has a fault that nobody foresaw: the others shall not suffer
-        for row in batch.rows:
-            if row in done or stop.is_set():
-                continue
-            try:
-                done.update(_run(scenarios([row]), REFRESH_STEPS, stop))
-            except Exception as error:
-                text = " ".join(f"{type(error).__name__}: {error}".split())
-                done[row] = {"status": "failed", "error": f"unexpected: {text}"}
-    return list(done.items())
-
-
-# --- what is to be done -------------------------------------------------------------------------
-
-
-def parse_shard(shard: tuple[int, int] | str | None) -> tuple[int, int]:
-    """Number of a shard, from 1, and of all shards.
-
-    Parameters
-    ----------
-    shard : (int, int), str or None
-        ``(3, 8)`` or ``"3/8"``; None is the whole.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
-    if shard is None:
-        return 1, 1
-    text = shard if isinstance(shard, str) else "/".join(map(str, shard))
-    match = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text)
-    if match is None or not 1 <= int(match[1]) <= int(match[2]):
-        raise InputError(f'--shard: must be I/N with I from 1 to N, such as 3/8, found "{text}"')
-    return int(match[1]), int(match[2])
-
-
-@dataclass
-class _Work:
-    """Rows that are to be run, and how they go together."""
-
-    hashes: list[str | None]  # of the shard's rows
-    rows: range  # of the shard
-    twins: dict[int, list[int]]  # rows with the scenario of another
-    batches: list[tuple[int, ...]]
-    steps: dict[int, float]  # of each row that is run
-    failed: dict[int, str]  # rows of which no scenario can be made, and why
-
-
-def _plan(design: Design, rows: range, done: set[tuple[int, str | None]], workers: int) -> _Work:
-    """Group what is left into batches whose runs share a kernel and are of similar length."""
-    hashes: list[str | None] = []
-    first: dict[str, int] = {}
-    twins: dict[int, list[int]] = {}
-    steps: dict[int, float] = {}
-    failed: dict[int, str] = {}
-    kernels: dict[Any, int] = {}
-    assemblies: dict[tuple[str, ...], tuple[int, int]] = {}  # kernel, number
-    found: list[tuple[int, int, int]] = []  # kernel, assembly, row
-    for row in rows:
-        try:
-            scenario, key, parts = design.identified(design.point(row))
-            length = _steps(scenario)
-        except InputError as error:
-            hashes.append(None)
-            failed[row] = str(error)
-            continue
-        hashes.append(key)
-        if (row, key) in done:
-            continue
-        if key in first:
-            twins.setdefault(first[key], []).append(row)
-            continue
-        first[key] = row
-        steps[row] = length
-        if parts not in assemblies:
-            kernel = kernels.setdefault(_lane_key(scenario), len(kernels))
-            assemblies[parts] = kernel, len(assemblies)
-        found.append((*assemblies[parts], row))
-    # similar assemblies are worked on together, so that each is made once
-    place = {number: at for at, (_, number) in enumerate(sorted(assemblies.values()))}
-    block = {row: place[number] // BLOCK for _, number, row in found}
-    found.sort(key=lambda f: (f[0], block[f[2]], -steps[f[2]], f[1], f[2]))
-    batches: list[tuple[int, ...]] = []
-    share = max(8, math.ceil(len(found) / max(4 * workers, 1) / 8) * 8)
-    here: list[int] = []
-    former: tuple[int, int] | None = None
-    for kernel, _, row in found:
-        size = int(min(max(STEPS_A_BATCH / steps[row], LEAST_BATCH), LARGEST_BATCH, share))
-        group = (kernel, block[row])
-        if here and (group != former or len(here) >= size // 8 * 8):
-            batches.append(tuple(here))
-            here = []
-        here.append(row)
-        former = group
-    if here:
-        batches.append(tuple(here))
-    # the longest first, so that all processors end together
-    batches.sort(key=lambda batch: (block[batch[0]], -sum(steps[row] for row in batch)))
-    return _Work(hashes, rows, twins, batches, steps, failed)
-
-
-def _steps(scenario: Scenario) -> float:
-    """Time steps of a run, about."""
-    motion = scenario.motion
-    if motion is not None and motion.synthetic is not None:
-        duration = float(motion.synthetic["duration"])
-    else:
-        duration = scenario.ground_motion().duration
-    return max(1.0, duration / scenario.solver.dt)
-
-
-def _lane_key(scenario: Scenario) -> tuple[Any, ...]:
-    """What scenarios must share to go abreast, as far as inputs tell; see `lockstep`."""
-    support, track, solver = scenario.support, scenario.wheelrail, scenario.solver
-    return (
-        support.kind == "prescribed",
-        getattr(support, "hinge", "elastic"),
-        len(scenario.vehicle.bodies),
-        track.wheel, track.rail, track.running_circle, track.rail_centre, track.gauge,
-        track.rolling_radius, track.youngs_modulus, track.poisson_ratio, track.creep_law,
-        solver.dt, solver.history_step, solver.contact, solver.hinge_solve,
-    )  # fmt: skip
-
-
-# --- running ------------------------------------------------------------------------------------
 
 
 def run_study(
@@ -305,12 +97,12 @@ def run_study(
         if step is not None:
             design = Design(study, step)
         rows = range(number - 1, design.size, count)
-        work = _plan(design, rows, _finished(folder.load(schema, say)), workers)
+        work = plan(design, rows, _finished(folder.load(schema, say)), workers)
         key = f"{out.resolve()}:{os.getpid()}:{time.monotonic_ns()}"
         batches = [Batch(key, study, step, batch) for batch in work.batches]
         if stop is not None and batches:
             _compile(design, work, say)
-        with _kept_design(key, design):
+        with kept_design(key, design):
             _run_all(pool, workers, stop, batches, work, design, folder, schema, progress)
     whole = folder.write_table(schema, dict(zip(rows, work.hashes, strict=True)))
     if count > 1:
@@ -322,16 +114,6 @@ def _finished(table: pa.Table) -> set[tuple[int, str | None]]:
     """Rows that need not be run again, with the hashes of their scenarios."""
     columns = (table.column(name).to_pylist() for name in ("row", "scenario_hash", "status"))
     return {(row, key) for row, key, state in zip(*columns, strict=True) if state != "failed"}
-
-
-@contextmanager
-def _kept_design(key: str, design: Design) -> Iterator[None]:
-    """Forget a design afterwards."""
-    try:
-        yield
-    finally:
-        with _DESIGNS_LOCK:
-            _DESIGNS.pop(key, None)
 
 
 @contextmanager
@@ -373,43 +155,7 @@ def _time_step(
     return folder.note_time_step(facts)
 
 
-MOST_HARDEST = 12
-
-
-def hardest(design: Design) -> list[Scenario]:
-    """Some runs that ask most of the time step.
-
-    Of every kind of support, hinge and speed the one with the largest ground velocity; those with
-    the largest of these.
-    """
-    worst: dict[Any, tuple[float, int]] = {}
-    velocities: dict[Any, float] = {}
-    for row in range(design.size):
-        point = design.point(row)
-        motion = (point.member, point.motion_key)
-        try:
-            scenario = design.scenario(point)
-            if motion not in velocities:
-                unit = scenario.ground_motion()
-                velocities[motion] = unit.pgv / abs(point.scale) if point.scale else 0.0
-        except InputError:
-            continue
-        support = scenario.support
-        key = (
-            support.kind,
-            getattr(support, "hinge", None),
-            getattr(support, "coupled", None),
-            scenario.vehicle.name,
-            scenario.vehicle.speed,
-        )
-        size = velocities[motion] * abs(point.scale)
-        if key not in worst or size > worst[key][0]:
-            worst[key] = (size, row)
-    order = sorted(worst.values(), key=lambda item: (-item[0], item[1]))
-    return [design.scenario(design.point(row)) for _, row in order[:MOST_HARDEST]]
-
-
-def _compile(design: Design, work: _Work, say: Callable[[str], None]) -> None:
+def _compile(design: Design, work: Work, say: Callable[[str], None]) -> None:
     """Compile or load each kernel here, where a request to stop is heard."""
     from railquake.assembly import assemble
     from railquake.simulation import COMPILING
@@ -417,9 +163,9 @@ def _compile(design: Design, work: _Work, say: Callable[[str], None]) -> None:
     seen = set()
     for batch in work.batches:
         scenario = design.scenario(design.point(batch[0]))
-        if scenario.solver.contact == "grid" or _lane_key(scenario) in seen:
+        if scenario.solver.contact == "grid" or kernel_key(scenario) in seen:
             continue
-        seen.add(_lane_key(scenario))
+        seen.add(kernel_key(scenario))
         with suppress(InputError):  # the run will say so
             system = assemble(scenario)
             group = _group(system)
@@ -436,7 +182,7 @@ def _run_all(
     workers: int,
     stop: threading.Event | None,
     batches: Iterable[Batch],
-    work: _Work,
+    work: Work,
     design: Design,
     folder: ResultsFolder,
     schema: pa.Schema,
@@ -489,7 +235,7 @@ class _Keeper:
 
     def __init__(
         self,
-        work: _Work,
+        work: Work,
         design: Design,
         folder: ResultsFolder,
         schema: pa.Schema,

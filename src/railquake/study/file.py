@@ -15,13 +15,9 @@ from railquake.inputs._toml import is_path, merged, read_toml
 from railquake.inputs.presets import KINDS, with_absolute_paths
 from railquake.inputs.scenario import Scenario
 from railquake.inputs.units import shown
-from railquake.study.axes import (
-    ListAxis,
-    Sampling,
-    VariantAxis,
-    parse_axes,
-    parse_sampling,
-)
+from railquake.study.axes import ListAxis, VariantAxis
+from railquake.study.distributions import Sampling
+from railquake.study.parsing import parse_axes, parse_sampling
 from railquake.suite import SUITES, Suite, SuiteMember, load_suite
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ import pytest
 import scipy.stats
 
 from railquake.errors import InputError
-from railquake.study.axes import parse_axes, parse_sampling, sampled
+from railquake.study.axes import sampled
+from railquake.study.parsing import parse_axes, parse_sampling
 
 HERE = Path("/somewhere")
 LATIN = {"method": "latin-hypercube", "count": 256, "seed": 7}

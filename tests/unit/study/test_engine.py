@@ -12,9 +12,10 @@ import pytest
 
 import railquake as rq
 from railquake.errors import InputError
-from railquake.study import engine, open_results
+from railquake.study import batches, engine, open_results
 from railquake.study.design import Design
-from railquake.study.results import MEASURES
+from railquake.study.plan import plan
+from railquake.study.table import MEASURES
 from study_files import BASE, MODELS, small, tables, untimed
 
 
@@ -151,7 +152,7 @@ def test_batches_share_a_kernel_and_are_of_similar_length():
         }
     )
     design = Design(study(data))
-    work = engine._plan(design, range(design.size), set(), workers=2)
+    work = plan(design, range(design.size), set(), workers=2)
     assert sorted(row for batch in work.batches for row in batch) == list(range(80))
     for batch in work.batches:
         labels = [design.point(row).labels for row in batch]
@@ -178,11 +179,11 @@ def test_a_stop_leaves_what_has_finished(tmp_path):
 
 def test_batches_stop_when_they_are_told():
     data = tables(**{"motion.synthetic.duration": ["600 s"]})
-    batch = engine.Batch("stop", study(data), None, (0,))
+    batch = batches.Batch("stop", study(data), None, (0,))
     stop = threading.Event()
     threading.Timer(0.5, stop.set).start()
     begin = time.monotonic()
-    assert engine.run_batch(batch, stop) == []
+    assert batches.run_batch(batch, stop) == []
     assert time.monotonic() - begin < 60.0  # the run itself takes minutes
 
 

@@ -9,7 +9,8 @@ import pytest
 
 import railquake as rq
 from railquake.errors import InputError
-from railquake.study import engine, merge_results, open_results, results
+from railquake.study import engine, folder, merge_results, open_results
+from railquake.study import table as columns
 from study_files import BASE, MODELS, small, tables, untimed
 
 
@@ -71,12 +72,12 @@ def test_a_row_gives_its_scenario_again(whole):
 
 
 def test_missing_rows_are_run_and_the_table_is_that_of_an_undisturbed_run(copy, whole, ran):
-    folder = results.ResultsFolder(copy)
-    schema = results.table_schema(open_results(copy).design)
-    rows = results.distinct(folder.load(schema, print)).take([0, 3, 7])
+    here = folder.ResultsFolder(copy)
+    schema = columns.table_schema(open_results(copy).design)
+    rows = columns.distinct(here.load(schema, print)).take([0, 3, 7])
     for part in (copy / "parts").iterdir():
         part.unlink()
-    results._write_parquet(rows, copy / "parts" / "some.parquet")
+    folder.write_parquet(rows, copy / "parts" / "some.parquet")
     (copy / "runs.parquet").unlink()
     assert open_results(copy).missing == 9
     table = study().run(copy)
@@ -154,7 +155,7 @@ def test_failed_runs_are_tried_again(tmp_path, ran):
 
 
 def test_a_full_disk_is_one_line_and_finished_rows_are_kept(tmp_path, monkeypatch, whole):
-    real, calls = results._write_parquet, []
+    real, calls = folder.write_parquet, []
 
     def full(table, path):
         calls.append(path)
@@ -164,11 +165,11 @@ def test_a_full_disk_is_one_line_and_finished_rows_are_kept(tmp_path, monkeypatc
         real(table, path)
 
     monkeypatch.setattr(engine, "FLUSH_S", 0.0)
-    monkeypatch.setattr(results, "_write_parquet", full)
+    monkeypatch.setattr(folder, "write_parquet", full)
     with pytest.raises(InputError, match="No space left on device; 8 rows.*are kept") as error:
         study().run(tmp_path / "out", jobs=1)
     assert "\n" not in str(error.value)
-    monkeypatch.setattr(results, "_write_parquet", real)
+    monkeypatch.setattr(folder, "write_parquet", real)
     assert open_results(tmp_path / "out").missing == 4
     assert not list((tmp_path / "out" / "parts").glob(".*"))
     assert untimed(study().run(tmp_path / "out")).equals(untimed(whole[0]))
@@ -246,4 +247,4 @@ def test_an_axis_may_not_be_called_like_a_measure(tmp_path):
 def test_a_damaged_time_step_is_refused(copy):
     (copy / "time_step.json").write_text(json.dumps({"dt": 1}))
     with pytest.raises(InputError, match="time_step.json: is damaged"):
-        results.ResultsFolder(copy).time_step()
+        folder.ResultsFolder(copy).time_step()
