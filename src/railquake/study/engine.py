@@ -8,8 +8,6 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
-    BrokenExecutor,
-    CancelledError,
     Executor,
     Future,
     wait,
@@ -206,10 +204,16 @@ def _run_all(
                 keeper.take(future.result())
                 running.remove(future)
             keeper.flush()
-    except (CancelledError, BrokenExecutor, OSError) as error:
+    except (KeyboardInterrupt, InputError):
+        raise
+    except Exception as error:
+        if stop is not None:
+            raise  # in this process it is a fault of the program
+        text = (str(error).splitlines() or [""])[0]
         raise InputError(
-            f"study: the workers are gone ({type(error).__name__}); finished rows are kept: run "
-            "the same command again to go on"
+            f"study: the workers failed ({type(error).__name__}{': ' if text else ''}{text}); "
+            "finished rows are kept: see that they run this version of railquake and reach its "
+            "files, and run the same command again to go on"
         ) from None
     finally:
         try:
