@@ -56,7 +56,8 @@ def cluster_executor(address: str, say: Callable[[str], None]) -> Iterator[tuple
             f"--scheduler: no scheduler answers at {address} ({error.strerror or error}); start "
             "one with: dask scheduler"
         ) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # one line says it all
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # one line says it all
     try:
         connect: Any = distributed.Client
         client = connect(address, timeout=PATIENCE_S, set_as_default=False)
