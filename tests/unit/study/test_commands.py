@@ -9,6 +9,7 @@ import pytest
 
 from railquake.cli import main
 from railquake.inputs._toml import dumps
+from railquake.study import cluster
 from study_files import BASE, small, tables, untimed
 
 
@@ -135,8 +136,9 @@ def test_a_scheduler_that_is_not_there_is_refused_at_once(file, tmp_path, capsys
     assert not out.exists()
 
 
-def test_something_else_that_answers_is_refused(file, tmp_path, capsys):
+def test_something_else_that_answers_is_refused(file, tmp_path, capsys, monkeypatch):
     pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster, "PATIENCE_S", 0.5)
     with socket.create_server(("127.0.0.1", 0)) as other:
         address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
         out = tmp_path / "out"
