@@ -1,7 +1,7 @@
 """Many runs: scenarios advance in lockstep, some to a batch, on threads.
 
-Each batch holds as many lanes as `kernel.LOCKSTEP` has.  A lane whose scenario has ended is given
-the next one, so records of different lengths do not wait for each other.  Scenarios that need
+Each batch holds as many lanes as `kernel.lockstep_target` has.  A lane whose scenario has ended is
+given the next one, so records of different lengths do not wait for each other.  Scenarios that need
 another kernel, another contact table or another number of steps a frame go to another batch.
 """
 
@@ -22,7 +22,7 @@ from railquake.assessment import assess
 from railquake.errors import InputError
 from railquake.physics import state
 from railquake.physics.energy import audit
-from railquake.physics.kernel import LOCKSTEP
+from railquake.physics.kernel import lockstep_target
 from railquake.response import Response
 from railquake.simulation import simulate
 
@@ -183,9 +183,9 @@ class _Batch:
     """Lanes that advance together."""
 
     def __init__(self, system: System, refresh_steps: int) -> None:
-        lanes = LOCKSTEP.lanes
+        lanes = lockstep_target().lanes
         self.refresh_steps = refresh_steps
-        self.kernel = system.kernel(LOCKSTEP)
+        self.kernel = system.kernel(lockstep_target())
         self.geometry = system.geometry
         self.idle = system.start.copy()
         self.idle[state.ON_TRACK] = 0.0

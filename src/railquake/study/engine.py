@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
 from railquake.lockstep import REFRESH_STEPS, _Batch, _group
-from railquake.physics.kernel import LOCKSTEP
+from railquake.physics.kernel import lockstep_target
 from railquake.study.batches import Batch, Ended, kept_design, run_batch
 from railquake.study.design import Design
 from railquake.study.folder import ResultsFolder, no_note
@@ -170,7 +170,7 @@ def _compile(design: Design, work: Work, say: Callable[[str], None]) -> None:
             if group in seen:
                 continue
             seen.add(group)
-            if not system.kernel(LOCKSTEP).is_cached:
+            if not system.kernel(lockstep_target()).is_cached:
                 say(COMPILING)
             _Batch(system, REFRESH_STEPS).advance()
 
