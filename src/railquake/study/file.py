@@ -15,7 +15,7 @@ from railquake.inputs._toml import is_path, merged, read_toml
 from railquake.inputs.presets import KINDS, with_absolute_paths
 from railquake.inputs.scenario import Scenario
 from railquake.inputs.units import shown
-from railquake.study.axes import ListAxis, VariantAxis
+from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
 from railquake.study.parsing import parse_axes, parse_sampling
 from railquake.suite import SUITES, Suite, SuiteMember, load_suite
@@ -109,8 +109,6 @@ class Study:
                         f"{self.where}: axes.{axis.column}: {path} is given by the suite; leave "
                         "out one of them"
                     )
-                if path == "solver.dt" and isinstance(axis, ListAxis) and AUTO in axis.values:
-                    raise InputError(f'{self.where}: axes.solver.dt: "auto" belongs in the base')
 
     @classmethod
     def from_dict(
