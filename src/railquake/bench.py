@@ -146,6 +146,7 @@ def run_bench(*, repeats: int = 5, seconds: bool = True, short: bool = False) ->
         "lockstep_two_threads_steps_per_s": two,
         "lockstep_over_scalar": lockstep / scalar,
         "two_threads_over_one": two / lockstep,
+        "gpu_steps_per_s": None,
         "elastic_steps_per_s": elastic,
         "grid_steps_per_s": grid,
         "opensees_pier_steps_per_s": opensees,
@@ -159,30 +160,40 @@ def run_bench(*, repeats: int = 5, seconds: bool = True, short: bool = False) ->
     return {**row, "processor": _processor(), "versions": versions()}
 
 
-ROWS = (
-    ("scalar_steps_per_s", "coupled, Bouc-Wen, table contact, one core", "steps/s"),
-    ("scalar_median_steps_per_s", "... median of the repetitions", "steps/s"),
-    ("lockstep_steps_per_s", "many abreast, Bouc-Wen, one core", "scenario-steps/s"),
-    ("lockstep_over_scalar", "... over the single run", "times"),
-    ("lockstep_two_threads_steps_per_s", "many abreast, two threads", "scenario-steps/s"),
-    ("two_threads_over_one", "... over one thread", "times"),
-    ("elastic_steps_per_s", "coupled, elastic hinge", "steps/s"),
-    ("grid_steps_per_s", "coupled, Bouc-Wen, grid contact", "steps/s"),
-    ("opensees_pier_steps_per_s", "OpenSees, the pier alone, its own Bouc-Wen", "steps/s"),
-    ("scalar_over_opensees", "coupled over OpenSees' pier alone", "times"),
-    ("first_result_s", "first run of a 40 s motion, compiling included", "s"),
-    ("warm_command_s", "the same again, from command to files", "s"),
-    ("import_s", "import railquake, the interpreter's start included", "s"),
+RATES = (
+    ("scalar_steps_per_s", "one run: Bouc-Wen, table contact, one core"),
+    ("scalar_median_steps_per_s", "... median of the repetitions"),
+    ("lockstep_steps_per_s", "many abreast, Bouc-Wen, one core"),
+    ("lockstep_two_threads_steps_per_s", "many abreast, two threads"),
+    ("gpu_steps_per_s", "many on a GPU"),
+    ("elastic_steps_per_s", "one run, elastic hinge"),
+    ("grid_steps_per_s", "one run, Bouc-Wen, grid contact"),
+    ("opensees_pier_steps_per_s", "OpenSees, the pier alone, its own Bouc-Wen"),
 )
+TIMES = (
+    ("first_result_s", "first run of a 40 s motion, compiling included"),
+    ("warm_command_s", "the same again, from command to files"),
+    ("import_s", "import railquake, the interpreter's start included"),
+)
+MISSING = {
+    "gpu_steps_per_s": "not measured (no GPU; railquake bench --device cuda where there is one)",
+    "opensees_pier_steps_per_s": "not measured (pip install railquake[bench])",
+}
 
 
 def print_bench(row: dict[str, Any]) -> None:
     """Print the table of `run_bench`."""
     print(f"{row['processor']}, Python {platform.python_version()}")
-    for key, text, unit in ROWS:
+    print(f"{'':50} {'million steps/s':>15} {'to one run':>11}")
+    for key, text in RATES:
         value = row.get(key)
         if value is None:
-            print(f"{text:52} not measured (pip install railquake[bench])")
-        else:
-            shown = f"{value:,.0f}" if value >= 1000.0 else f"{value:,.3g}"
-            print(f"{text:52} {shown:>14} {unit}")
+            print(f"{text:50} {MISSING.get(key, 'not measured')}")
+            continue
+        ratio = value / row["scalar_steps_per_s"]
+        print(f"{text:50} {1e-6 * value:15.3f} {ratio:11.3g}")
+    print(f"{'':50} {'s':>15}")
+    for key, text in TIMES:
+        value = row.get(key)
+        if value is not None:
+            print(f"{text:50} {value:15.3g}")

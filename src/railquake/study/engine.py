@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import REFRESH_STEPS, _Batch, _group
+from railquake.lockstep import REFRESH_STEPS, _Batch, _group, choose_time_step
 from railquake.physics.kernel import lockstep_target
 from railquake.study.batches import Batch, Ended, kept_design, run_batch
 from railquake.study.design import Design
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
     from railquake.study.file import Study
+    from railquake.time_step import TimeStep
 
 __all__ = ["StudyProgress", "run_study"]
 
@@ -138,19 +139,19 @@ def _executor(
 
 def _time_step(
     design: Design, folder: ResultsFolder, jobs: int | None, say: Callable[[str], None]
-) -> float | None:
+) -> TimeStep | None:
     """The time step where the study leaves it open: chosen once, then read."""
     if not design.study.chooses_time_step:
         return None
     known = folder.time_step()
     if known is not None:
         return known
-    from railquake.time_step import choose_time_step
-
-    chosen = choose_time_step(hardest(design), threads=jobs)
+    tried = [scenario for scenario in hardest(design) if scenario.solver.dt == "auto"]
+    if not tried:
+        return None  # an axis sets it
+    chosen = choose_time_step(tried, threads=jobs)
     say(chosen.text)
-    facts = {"dt_s": chosen.dt, "largest_relative_change": chosen.error, "text": chosen.text}
-    return folder.note_time_step(facts)
+    return folder.note_time_step(chosen)
 
 
 def _compile(design: Design, work: Work, say: Callable[[str], None]) -> None:

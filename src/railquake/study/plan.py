@@ -117,7 +117,7 @@ def _steps(scenario: Scenario) -> float:
         duration = float(motion.synthetic["duration"])
     else:
         duration = scenario.ground_motion().duration
-    return max(1.0, duration / scenario.solver.dt)
+    return max(1.0, duration / scenario.solver.step)
 
 
 def kernel_key(scenario: Scenario) -> tuple[Any, ...]:
