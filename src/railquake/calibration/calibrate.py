@@ -246,11 +246,12 @@ def axial_load_of(column: Column, pier: Pier) -> float:
 def effective_flexural_stiffness(
     chord: Array, moment: Array, rotation: Array, length: float
 ) -> float:
-    """E I of the elastic column that turns its top as the fibre column does near yield, N m2.
+    """E I of the elastic column that turns its top as the fibre column does up to yield, N m2.
 
     With a hinge that turns by theta below an elastic column, u = theta L + M L^2 / (3 E I) and the
-    top turns by theta + M L / (2 E I).  Both together give E I = M L / (6 (top - u / L)), whatever
-    the hinge does; taken where three quarters of the largest moment are first reached.
+    top turns by theta + M L / (2 E I).  Both together give M L / (6 E I) = top - u / L, whatever the
+    hinge does; E I is the least-squares one until three quarters of the largest moment are first
+    reached.
 
     Parameters
     ----------
@@ -259,8 +260,9 @@ def effective_flexural_stiffness(
     length : float
         m.
     """
-    at = int(np.argmax(np.abs(moment) >= EFFECTIVE * np.abs(moment).max()))
-    return float(moment[at] * length / (6.0 * (rotation[at] - chord[at])))
+    end = int(np.argmax(np.abs(moment) >= EFFECTIVE * np.abs(moment).max())) + 1
+    m, bent = moment[:end], (rotation - chord)[:end]
+    return float(m @ m * length / (6.0 * (m @ bent)))
 
 
 def _elastic_column(column: Column, stiffness: float) -> tuple[float, float]:

@@ -12,15 +12,15 @@ if TYPE_CHECKING:
 
 TITLE = "The hinge of the case study: fitted to a fibre column"
 SOURCE = """A cantilever of fibres in OpenSees: octagonal, 1.25 m, 6.0 m high (H/D = 4.8),
-longitudinal ratio 2 %, transverse ratio 0.7 %, under the weight of the pier `bart-berkeley`, as Gomez
-and DeJong (2023) describe the columns. Strengths are not in the paper: concrete of 34.5 MPa and bars
-of 331 MPa, usual expected values for the 1960s."""
-WHAT = """The degrading Bouc-Wen hinge on an elastic column is fitted to the fibre column's loop under
-24 cycles of drift up to 3.5 %. Then both are shaken by the first three records of the paper's suite
-by file name, at the 10 % in 50 years level; the fit has seen neither these nor any other motion."""
-WHY = """Two laws of different make are compared: the Bouc-Wen law has no axial load, whose effect
-pinches the fibre column's loops, and turns about one point. 10 % of the peak moment (root of the mean
-square) and of the peak displacement is far below what record and strength leave open."""
+longitudinal ratio 2 %, transverse ratio 0.7 %, under the weight of the pier `bart-berkeley`, as
+Gomez and DeJong (2023) describe the columns. Strengths are not in the paper: concrete of 34.5 MPa
+and bars of 331 MPa, usual expected values for the 1960s."""
+WHAT = """The degrading Bouc-Wen hinge on an elastic column is fitted to the fibre column's loop
+under 24 cycles of drift up to 3.5 %. Then both are shaken by the first three records of the paper's
+suite by file name, at the level of 10 % in 50 years; the fit has seen no motion at all."""
+WHY = """Two laws of different make are compared: the Bouc-Wen law knows no axial load, whose effect
+pinches the fibre column's loops, and turns about one point. 10 % of the peak moment (root of the
+mean square), and of the peak displacement, is far below what record and strengths leave open."""
 NEEDS = ("fem", "data")
 FILES = tuple(
     f"records/paper_suite/{name}.AT2"
