@@ -249,9 +249,9 @@ def effective_flexural_stiffness(
     """E I of the elastic column that turns its top as the fibre column does up to yield, N m2.
 
     With a hinge that turns by theta below an elastic column, u = theta L + M L^2 / (3 E I) and the
-    top turns by theta + M L / (2 E I).  Both together give M L / (6 E I) = top - u / L, whatever the
-    hinge does; E I is the least-squares one until three quarters of the largest moment are first
-    reached.
+    top turns by theta + M L / (2 E I).  Both together give M L / (6 E I) = top - u / L,
+    whatever the hinge does; E I is the least-squares one until three quarters of the largest moment
+    are first reached.
 
     Parameters
     ----------

@@ -42,6 +42,7 @@ SUBSTEPS_PER_PEAK = 200  # hinge steps over the largest rotation, at least
 # A parameter is called undetermined where its standard error is this share of its whole range.
 UNDETERMINED = 0.25
 CORRELATED = 0.95
+HOPELESS = 0.4  # misfit over the peak: the moment is hardly a hinge's
 
 
 @dataclass(frozen=True)
@@ -189,7 +190,7 @@ def fit_hinge(
             progress(len(places) + k + 1, len(places) + POLISHED)
     found.sort(key=lambda pair: pair[0])
     cost, best = found[0]
-    if not np.isfinite(cost) or cost >= 1.0:
+    if not cost < HOPELESS:
         raise InputError(
             f"{loop.name}: no hinge follows this loop (misfit {cost:.0%} of the peak moment); "
             "look at its picture, its units and the column's stiffness"

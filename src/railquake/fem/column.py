@@ -34,6 +34,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 BASE, TOP, COLUMN = 1, 2, 1
 TOP_HINGE = 0.02  # of the length: the integration wants a hinge at the top, too
+CRUSHED = 0.02  # shortening over the length: a column that has lost its core
 HALVINGS = 6  # of a step that does not converge
 
 
@@ -143,9 +144,10 @@ def push_column(
         ops.load(TOP, 1.0, 0.0, 0.0)
         moment, rotation = np.empty(len(displacement)), np.empty(len(displacement))
         for k, target in enumerate(displacement):
-            if not _push(ops, float(target) - float(ops.nodeDisp(TOP, 1))):
+            found = _push(ops, float(target) - float(ops.nodeDisp(TOP, 1)))
+            if not found or _shortening(ops, column) > CRUSHED:
                 raise InputError(
-                    f"the fibre column finds no equilibrium at a drift of "
+                    f"the fibre column bears its axial load no longer at a drift of "
                     f"{target / column.length:.2%}, step {k + 1} of the protocol: the section "
                     "fails there; lower the largest drift, or the axial load"
                 )
@@ -209,10 +211,11 @@ def shake_column(
         count = round((len(acceleration) - 1) * dt / step)
         displacement, moment = np.zeros(count + 1), np.zeros(count + 1)
         for k in range(1, count + 1):
-            if not _retry(ops, lambda part: ops.analyze(1, part), step):
+            found = _retry(ops, lambda part: ops.analyze(1, part), step)
+            if not found or _shortening(ops, column) > CRUSHED:
                 raise InputError(
-                    f"the fibre column finds no equilibrium at {k * step:.2f} s of the motion, at "
-                    f"a drift of {displacement[k - 1] / column.length:.2%}: it fails there; take "
+                    f"the fibre column bears its axial load no longer at {k * step:.2f} s of the "
+                    f"motion, at a drift of {displacement[k - 1] / column.length:.2%}: it fails there; take "
                     "a weaker motion"
                 )
             displacement[k] = float(ops.nodeDisp(TOP, 1))
@@ -254,12 +257,18 @@ def _build(ops: Any, column: FibreColumn) -> None:
     _analysis(ops, 1e-9 * column.length)
     ops.integrator("LoadControl", 0.05)
     ops.analysis("Static")
-    if ops.analyze(20):
+    # beyond its peak strain the concrete falls, and the bars alone would go on yielding
+    if ops.analyze(20) or _shortening(ops, column) > column.confined.peak_strain:
         raise InputError(
             f"the section cannot carry its axial load of {1e-3 * column.axial_load:.4g} kN; lower "
             "the load or enlarge the section"
         )
     ops.loadConst("-time", 0.0)
+
+
+def _shortening(ops: Any, column: FibreColumn) -> float:
+    """Of the column's axis over its length."""
+    return -float(ops.nodeDisp(TOP, 2)) / column.length
 
 
 def _analysis(ops: Any, tolerance: float) -> None:
