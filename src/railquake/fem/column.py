@@ -215,8 +215,8 @@ def shake_column(
             if not found or _shortening(ops, column) > CRUSHED:
                 raise InputError(
                     f"the fibre column bears its axial load no longer at {k * step:.2f} s of the "
-                    f"motion, at a drift of {displacement[k - 1] / column.length:.2%}: it fails there; take "
-                    "a weaker motion"
+                    f"motion, at a drift of {displacement[k - 1] / column.length:.2%}: it fails "
+                    "there; take a weaker motion"
                 )
             displacement[k] = float(ops.nodeDisp(TOP, 1))
             moment[k] = float(ops.eleResponse(COLUMN, "forces")[2])
