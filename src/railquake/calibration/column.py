@@ -21,6 +21,7 @@ from railquake.inputs.units import (
     PositiveLength,
     PositiveNumber,
     PositivePressure,
+    PositiveSecondMomentOfArea,
     Quantity,
 )
 
@@ -65,7 +66,6 @@ class Concrete(InputModel):
 
     strength: Annotated[
         PositivePressure,
-        Quantity("pressure", "positive"),
         Field(ge=5e6, le=150e6, description="Cylinder strength f'c, expected [Pa]"),
     ]
     peak_strain: Annotated[Ratio, Field(description="Strain at f'c")] = 0.002
@@ -164,8 +164,7 @@ class Column(InputModel):
         Field(description="Of the pier's elastic column; by default the concrete's [Pa]"),
     ] = None
     second_moment_of_area: Annotated[
-        float | None,
-        Quantity("second moment of area", "positive"),
+        PositiveSecondMomentOfArea | None,
         Field(description="Of the elastic column; by default the fibre column's, cracked [m4]"),
     ] = None
     plastic_length: Annotated[

@@ -37,7 +37,7 @@ SEED = 20230
 FIRST_EVALUATIONS, LAST_EVALUATIONS = 25, 150
 POLISHED = 2  # of the starts, the best
 LEAST_FLEXIBILITY = 0.1  # of the hinge over that of the whole: for the guess
-NEAR_BOUND = 5e-3  # of the scaled interval
+NEAR_BOUND = 1e-3  # of the scaled interval
 SUBSTEPS_PER_PEAK = 200  # hinge steps over the largest rotation, at least
 # A parameter is called undetermined where its standard error is this share of its whole range.
 UNDETERMINED = 0.25

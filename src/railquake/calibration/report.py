@@ -167,7 +167,7 @@ def _comparison(calibration: Calibration) -> list[str]:
     # the last cycle at each amplitude, while these grow
     last: dict[float, tuple[float, float, float]] = {}
     for one, two, three in zip(reference.energy, fitted.energy, former.energy, strict=True):
-        amplitude = round(one[0], 5)
+        amplitude = float(f"{one[0]:.3g}")
         if amplitude >= max(last, default=0.0):
             last[amplitude] = (one[1], two[1], three[1])
     most = max(energies[0] for energies in last.values())

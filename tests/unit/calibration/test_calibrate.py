@@ -177,6 +177,22 @@ def test_wrong_inputs_are_one_line(column_file, loop_file, tmp_path, capsys, mon
     assert not (tmp_path / "x").exists()
 
 
+def test_both_models_move_and_resist_the_same_way(column_file, opensees):
+    found = calibrate_column(load_column(column_file), starts=1)
+    (check,) = found.checks
+    assert len(check.time) == len(check.reference) == len(check.ours)
+    assert np.corrcoef(check.reference, check.ours)[0, 1] > 0.8
+    assert np.corrcoef(check.reference_moment, check.moment)[0, 1] > 0.8
+    assert check.peak_error == pytest.approx(
+        np.abs(check.ours).max() / np.abs(check.reference).max() - 1.0
+    )
+    # the hinge carries what the column lacks: the same column as the fibres' own
+    assert found.pier.bouc_wen == found.fit.hinge
+    assert found.pier.mass == found.former.mass
+    stiffness = found.pier.youngs_modulus * found.pier.second_moment_of_area
+    assert 1e9 < stiffness < 4e9  # cracked, below Ec Ig = 3.3e9 with bars
+
+
 def test_soft_elastic_column_is_refused(column_file, opensees):
     column = load_column(column_file).model_copy(update={"second_moment_of_area": 0.01})
     with pytest.raises(rq.InputError, match="nothing is left to a hinge"):
