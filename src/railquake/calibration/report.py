@@ -170,7 +170,7 @@ def _comparison(calibration: Calibration) -> list[str]:
         amplitude = float(f"{one[0]:.3g}")
         if amplitude >= max(last, default=0.0):
             last[amplitude] = (one[1], two[1], three[1])
-    most = max(energies[0] for energies in last.values())
+    most = max((energies[0] for energies in last.values()), default=0.0)
     for amplitude, energies in last.items():
         if energies[0] < TOLD * most:
             continue

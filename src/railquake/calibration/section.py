@@ -30,6 +30,7 @@ __all__ = [
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 STRIPS = 40  # across the section; twice as many change the case study's loop by 0.1 % of its peak
+LONGEST_HINGE = 0.2  # of the length; the element's integration wants less than a quarter
 FINE = 50  # points to a strip's area
 MPA = 1e6
 
@@ -103,7 +104,8 @@ def fibre_column(column: Column, length: float, axial_load: float) -> FibreColum
     Raises
     ------
     InputError
-        If the section cannot carry its axial load, or the cover leaves no core.
+        If the section cannot carry its axial load, bars fill the core, or the column is shorter
+        than five plastic hinges.
     """
     section, concrete, steel = column.section, column.concrete, column.steel
     squash = squash_load(section, concrete, steel)
@@ -132,11 +134,18 @@ def fibre_column(column: Column, length: float, axial_load: float) -> FibreColum
             f"{column.name}: section.longitudinal_ratio: bars of {1e4 * steel_area:.4g} cm2 fill "
             f"half of the core of {1e4 * core.sum():.4g} cm2 or more; lower it or the cover"
         )
+    hinge = plastic_length(column, length, bar_diameter)
+    if hinge > LONGEST_HINGE * length:
+        raise InputError(
+            f"{column.name}: the plastic hinge would be {hinge:.3g} m long, more than a fifth of the "
+            f"column's {length:g} m: so short a column does not fail in bending; lengthen it, or "
+            "give plastic_length"
+        )
     inside = core > 0.0
     outside = whole - core > 1e-9
     return FibreColumn(
         length=length,
-        plastic_length=plastic_length(column, length, bar_diameter),
+        plastic_length=hinge,
         axial_load=axial_load,
         cover=Fibres(middle[outside], (whole - core)[outside]),
         core=Fibres(middle[inside], share * core[inside]),

@@ -106,6 +106,11 @@ def test_bars_that_fill_the_core_are_refused():
         fibre_column(column(longitudinal_ratio=0.14, cover="300 mm"), 6.0, 1e6)
 
 
+def test_column_shorter_than_five_hinges_is_refused():
+    with pytest.raises(InputError, match="more than a fifth of the column's 2 m"):
+        fibre_column(column(), 2.0, 1e6)
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
