@@ -106,7 +106,7 @@ def summary_lines(calibration: Calibration) -> list[str]:
         f"loop misfit              {fit.misfit.over_peak:.2%} of the peak moment"
         + _verdict(fit.misfit.over_peak < GOOD_MISFIT, GOOD_MISFIT)
         + f"; {fit.misfit.over_rms:.2%} of its RMS; largest {fit.misfit.largest:.1%}",
-        f"dissipated energy        {100.0 * fit.misfit.energy:+.1f} % of the reference's",
+        f"dissipated energy        {_percent(fit.misfit.energy)} of the reference's",
         f"starts                   {len(fit.starts)}, misfits "
         f"{fit.starts[0]:.2%} to {fit.starts[-1]:.2%}",
         "",
@@ -128,12 +128,17 @@ def summary_lines(calibration: Calibration) -> list[str]:
             good = abs(check.peak_error) < GOOD_PEAK
             drift = check.peak_reference / check.length
             beyond = "; beyond the protocol's drifts" if is_beyond(calibration, drift) else ""
-            remark = f"{100.0 * check.peak_error:+.1f} %{_verdict(good, GOOD_PEAK)}{beyond}"
+            remark = f"{_percent(check.peak_error)}{_verdict(good, GOOD_PEAK)}{beyond}"
             lines.append(
                 f"{check.name[:26]:26} {check.pga / 9.80665:6.3f} "
                 f"{1e3 * check.peak_reference:12.2f} {1e3 * check.peak_ours:12.2f}   {remark}"
             )
     return lines
+
+
+def _percent(share: float) -> str:
+    """Signed, and never a negative zero."""
+    return f"{round(100.0 * share, 1) + 0.0:+.1f} %"
 
 
 def _verdict(good: bool, bound: float) -> str:
@@ -234,7 +239,7 @@ def draw_loops(calibration: Calibration, path: Path) -> Path:
         name=calibration.name,
         drift=calibration.loop.flexibility > 0.0,
         facts=f"RMS difference {misfit.over_peak:.1%} of the peak moment, {misfit.over_rms:.1%} of "
-        f"its RMS; dissipated energy {100.0 * misfit.energy:+.1f} %",
+        f"its RMS; dissipated energy {_percent(misfit.energy)}",
     )
 
 
@@ -248,7 +253,7 @@ def draw_histories(calibration: Calibration, path: Path) -> Path:
                 check.reference,
                 check.ours,
                 f"PGA {check.pga / 9.80665:.2f} g; peak {1e3 * check.peak_reference:.0f} mm and "
-                f"{1e3 * check.peak_ours:.0f} mm, {100.0 * check.peak_error:+.1f} %",
+                f"{1e3 * check.peak_ours:.0f} mm, {_percent(check.peak_error)}",
             )
             for check in calibration.checks
         ],

@@ -138,8 +138,8 @@ def fibre_column(column: Column, length: float, axial_load: float) -> FibreColum
     if hinge > LONGEST_HINGE * length:
         raise InputError(
             f"{column.name}: the plastic hinge would be {hinge:.3g} m long, more than a fifth of "
-            f"the column's {length:g} m: so short a column does not fail in bending; lengthen it, or "
-            "give plastic_length"
+            f"the column's {length:g} m: so short a column does not fail in bending; lengthen it, "
+            "or give plastic_length"
         )
     inside = core > 0.0
     outside = whole - core > 1e-9
