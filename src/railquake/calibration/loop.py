@@ -68,7 +68,9 @@ def drive_hinge(
 
 def _kernel(target: Target) -> Any:
     # the compiler's cache knows the sources of the physics, not this file
-    own = int(hashlib.sha256(_follow.__code__.co_code).hexdigest()[:12], 16)
+    code = _follow.__code__
+    text = repr((code.co_code, code.co_consts, code.co_names))
+    own = int(hashlib.sha256(text.encode()).hexdigest()[:12], 16)
     return bind(_follow, target, constants={"follow": own}).call
 
 
