@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from railquake.lockstep import simulate_many as simulate_many
     from railquake.response import Response as Response
     from railquake.simulation import simulate as simulate
+    from railquake.study import Study as Study
+    from railquake.study import load_study as load_study
 
 __version__ = "0.1.0"
 
@@ -32,9 +34,11 @@ _HOMES = {
     "InputError": "railquake.errors",
     "Response": "railquake.response",
     "Scenario": "railquake.inputs.scenario",
+    "Study": "railquake.study",
     "assemble": "railquake.assembly",
     "assess": "railquake.assessment",
     "load_scenario": "railquake.inputs.scenario",
+    "load_study": "railquake.study",
     "read_motion": "railquake.inputs.motion",
     "scenario": "railquake.inputs.scenario",
     "simulate": "railquake.simulation",

@@ -39,7 +39,7 @@ def demo(out: Out = Path("demo-out"), as_json: Json = False) -> None:
     """
     from railquake.inputs.scenario import scenario
 
-    _run(scenario(synthetic=DEMO), out, as_json)
+    run_scenario(scenario(synthetic=DEMO), out, as_json)
 
 
 @app.command()
@@ -55,10 +55,11 @@ def run(case: Case, out: Out, changes: Changes = None, as_json: Json = False) ->
     """
     from railquake.inputs.scenario import load_scenario
 
-    _run(load_scenario(case, changes or ()), out, as_json)
+    run_scenario(load_scenario(case, changes or ()), out, as_json)
 
 
-def _run(scenario: Scenario, out: Path, as_json: bool) -> None:
+def run_scenario(scenario: Scenario, out: Path, as_json: bool) -> None:
+    """Run a scenario, write its folder and print what matters."""
     from railquake.output import prepare_folder, write_run
 
     prepare_folder(out)

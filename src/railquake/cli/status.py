@@ -15,7 +15,7 @@ import typer
 from railquake.cli.application import app
 from railquake.errors import InputError
 
-__all__ = ["main"]
+__all__ = ["Stopped", "main"]
 
 # Base of all errors in the use of a command, from the click that typer itself uses.
 USAGE_ERROR: type[Exception] = next(
@@ -23,6 +23,10 @@ USAGE_ERROR: type[Exception] = next(
 )
 
 STOPPED = 130  # exit status after Ctrl-C
+
+
+class Stopped(Exception):
+    """Ctrl-C in a command that says by itself what is left of its work."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -70,6 +74,8 @@ def _status(arguments: Sequence[str] | None) -> int:
         )
     except InputError as error:
         return _complain(str(error), 2)
+    except Stopped as stop:
+        return _complain(str(stop), STOPPED)
     except (KeyboardInterrupt, typer.Abort):
         status = STOPPED
     except USAGE_ERROR as error:

@@ -8,6 +8,7 @@ import math
 import os
 from array import array
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -159,34 +160,74 @@ class Scenario(InputModel):
         InputError
             If a file that the scenario names cannot be read.
         """
-        data = self.model_dump()
-        for section in ("vehicle", "support", "wheelrail"):
-            for key in _NOT_PHYSICS:
-                data[section].pop(key, None)
-        for table, key in (
-            (data["wheelrail"]["wheel"], "file"),
-            (data["wheelrail"]["rail"], "file"),
-            (data["support"], "file"),
-            (data["motion"] or {}, "record"),
-            (data["motion"] or {}, "vertical"),
-        ):
-            if table.get(key) is not None:
-                table[key] = _file_hash(table[key])
-        if data["motion"] is not None:
-            data["motion"].pop("name")
-            for key in ("acceleration", "vertical_acceleration"):
-                samples = data["motion"][key]
-                if samples is not None:
-                    data["motion"][key] = hashlib.sha256(array("d", samples).tobytes()).hexdigest()
-        canonical = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
-        return hashlib.sha256(canonical.encode()).hexdigest()
+        return hash_of_fingerprints(
+            {name: fingerprint(getattr(self, name)) for name in type(self).model_fields}
+        )
+
+
+def fingerprint(section: InputModel | None) -> str:
+    """All of a scenario's section that decides the results, as a text.
+
+    Parameters
+    ----------
+    section : InputModel or None
+        Such as ``scenario.support``.
+
+    Returns
+    -------
+    str
+        Equal texts mean equal inputs; the content of files counts, not their names.
+
+    Raises
+    ------
+    InputError
+        If a file that the section names cannot be read.
+    """
+    return "null" if section is None else _canonical(section)
+
+
+def hash_of_fingerprints(texts: Mapping[str, str]) -> str:
+    """`Scenario.content_hash` from the fingerprints of all sections by name.
+
+    Parameters
+    ----------
+    texts : mapping
+        For each section of a scenario what `fingerprint` gives.
+    """
+    canonical = ",".join(f'"{name}":{texts[name]}' for name in sorted(texts))
+    return hashlib.sha256(f"{{{canonical}}}".encode()).hexdigest()
+
+
+def _canonical(section: InputModel) -> str:
+    data = section.model_dump()
+    if not isinstance(section, Motion | Solver):
+        for key in _NOT_PHYSICS:
+            data.pop(key, None)
+    tables = [(data, "file"), (data, "record"), (data, "vertical")]
+    tables += [(data[key], "file") for key in ("wheel", "rail") if key in data]
+    for table, key in tables:
+        if table.get(key) is not None:
+            table[key] = _file_hash(table[key])
+    if isinstance(section, Motion):
+        data.pop("name")
+        for key in ("acceleration", "vertical_acceleration"):
+            if data[key] is not None:
+                data[key] = hashlib.sha256(array("d", data[key]).tobytes()).hexdigest()
+    return json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
 def _file_hash(path: str) -> str:
     try:
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+        found = os.stat(path)
+        return _hash_of(path, found.st_mtime_ns, found.st_size)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+@lru_cache(maxsize=4096)
+def _hash_of(path: str, changed: int, size: int) -> str:
+    """Hash of a file's content, read again when its time or size has changed."""
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
 def load_scenario(path: str | Path, overrides: Overrides = ()) -> Scenario:

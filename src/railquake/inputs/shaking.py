@@ -5,8 +5,10 @@ The motions themselves, and the readers of records, are in `railquake.inputs.mot
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
@@ -106,18 +108,10 @@ class Motion(InputModel):
         InputError
             If the record's file cannot be used.
         """
-        from railquake.inputs.motion import read_motion, synthetic_motion
-
         if self.record is not None:
-            made = read_motion(
-                self.record,
-                channel=self.channel,
-                units=self.units,
-                dt=self.dt,
-                allow_high_pga=self.allow_high_pga,
-            )
+            made = self._read(self.record, self.channel)
         elif self.synthetic is not None:
-            made = synthetic_motion(self.synthetic)
+            made = _synthetic(tuple(self.synthetic.items()))
         else:
             assert self.acceleration is not None  # by the validator above
             made = motion_of_samples(self.name or "samples", self.dt, self.acceleration)
@@ -136,22 +130,45 @@ class Motion(InputModel):
         InputError
             If its file cannot be used.
         """
-        from railquake.inputs.motion import read_motion
-
         if self.vertical_acceleration is not None:
             name = f"{self.name or 'samples'} vertical"
             made = motion_of_samples(name, self.dt, self.vertical_acceleration)
         elif self.vertical is not None:
-            made = read_motion(
-                self.vertical,
-                channel=self.vertical_channel,
-                units=self.units,
-                dt=self.dt,
-                allow_high_pga=self.allow_high_pga,
-            )
+            made = self._read(self.vertical, self.vertical_channel)
         else:
             return None
         return _scaled(made, abs(self.scale))
+
+    def _read(self, path: str, channel: int | str | None) -> GroundMotion:
+        try:
+            found = os.stat(path)
+            stamp = (found.st_mtime_ns, found.st_size)
+        except OSError:
+            stamp = (0, 0)  # reading it says what is wrong
+        return _record(path, stamp, channel, self.units, self.dt, self.allow_high_pga)
+
+
+@lru_cache(maxsize=64)
+def _record(
+    path: str,
+    stamp: tuple[int, int],
+    channel: int | str | None,
+    units: str | None,
+    dt: float | None,
+    allow_high_pga: bool,
+) -> GroundMotion:
+    """Read a record once for the many runs of a study, again when the file has changed."""
+    from railquake.inputs.motion import read_motion
+
+    return read_motion(path, channel=channel, units=units, dt=dt, allow_high_pga=allow_high_pga)
+
+
+@lru_cache(maxsize=64)
+def _synthetic(parameters: tuple[tuple[str, int | float], ...]) -> GroundMotion:
+    """Make a synthetic motion once for the many runs of a study."""
+    from railquake.inputs.motion import synthetic_motion
+
+    return synthetic_motion(dict(parameters))
 
 
 def motion_of_samples(name: str, dt: float | None, samples: Sequence[float]) -> GroundMotion:

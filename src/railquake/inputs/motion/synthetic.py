@@ -158,7 +158,7 @@ class SyntheticParameters:
             )
 
 
-_DIMENSIONS = {
+DIMENSIONS: dict[str, str | None] = {
     "duration": "time",
     "dt": "time",
     "pga": "acceleration",
@@ -170,7 +170,7 @@ _DIMENSIONS = {
     "strong_duration": "time",
     "rise": None,
 }
-_NUMBERS = tuple(_DIMENSIONS)
+_NUMBERS = tuple(DIMENSIONS)
 _OPTIONAL = ("pga", "arias_intensity", "strong_duration")
 
 
@@ -211,7 +211,7 @@ def _si(value: Any, name: str, where: str) -> Any:
     """A text with a unit as a number in SI units; anything else as it is."""
     if not isinstance(value, str):
         return value
-    dimension = _DIMENSIONS.get(name)
+    dimension = DIMENSIONS.get(name)
     if dimension is None:
         raise InputError(f"{where}.{name}: a plain number is needed, found '{value}'")
     from railquake.inputs.units import to_si  # imported late: it brings the unit registry

@@ -1,0 +1,120 @@
+"""Batches of runs: what one task does."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from railquake.errors import InputError
+from railquake.lockstep import REFRESH_STEPS, _run
+from railquake.study.design import Design
+
+if TYPE_CHECKING:
+    from railquake.inputs.scenario import Scenario
+    from railquake.study.file import Study
+
+__all__ = ["Batch", "Ended", "kept_design", "run_batch"]
+
+Ended = list[tuple[int, dict[str, Any]]]
+"""Rows that have ended, and their measures."""
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Work for one task: some rows of a study.
+
+    Attributes
+    ----------
+    key : str
+        Tells studies apart within a process.
+    study : Study
+        Its suite loaded.
+    time_step : float or None
+        Where the study leaves it open, s.
+    rows : tuple of int
+    """
+
+    key: str
+    study: Study
+    time_step: float | None
+    rows: tuple[int, ...]
+
+
+_DESIGNS: OrderedDict[str, Design] = OrderedDict()
+_DESIGNS_MOST = 4
+_DESIGNS_LOCK = threading.Lock()
+
+
+def _design_of(batch: Batch) -> Design:
+    with _DESIGNS_LOCK:
+        known = _DESIGNS.get(batch.key)
+    return known or _keep_design(batch.key, Design(batch.study, batch.time_step))
+
+
+def _keep_design(key: str, design: Design) -> Design:
+    with _DESIGNS_LOCK:
+        _DESIGNS[key] = design
+        _DESIGNS.move_to_end(key)
+        while len(_DESIGNS) > _DESIGNS_MOST:
+            _DESIGNS.popitem(last=False)
+    return design
+
+
+def run_batch(
+    batch: Batch, stop: threading.Event | None = None
+) -> list[tuple[int, dict[str, Any]]]:
+    """Run some rows of a study in lockstep, on this thread.
+
+    Parameters
+    ----------
+    batch : Batch
+    stop : threading.Event, optional
+        Once it is set, what has finished is returned.
+
+    Returns
+    -------
+    list of (int, dict)
+        Row and measures.  A run that cannot be made has the status ``failed`` and its ``error``.
+    """
+    stop = threading.Event() if stop is None else stop
+    design = _design_of(batch)
+    done: dict[int, dict[str, Any]] = {}
+
+    def scenarios(rows: Sequence[int]) -> Iterator[tuple[int, Scenario]]:
+        for row in rows:
+            if stop.is_set():
+                return
+            try:
+                yield row, design.scenario(design.point(row))
+            except InputError as error:
+                done[row] = {"status": "failed", "error": str(error)}
+
+    try:
+        for row, measures in _run(scenarios(batch.rows), REFRESH_STEPS, stop):
+            done[row] = measures
+    except Exception:
+        # one of them has a fault that nobody foresaw: the others shall not suffer
+        for row in batch.rows:
+            if row in done or stop.is_set():
+                continue
+            try:
+                done.update(_run(scenarios([row]), REFRESH_STEPS, stop))
+            except Exception as error:
+                text = " ".join(f"{type(error).__name__}: {error}".split())
+                done[row] = {"status": "failed", "error": f"unexpected: {text}"}
+    return list(done.items())
+
+
+@contextmanager
+def kept_design(key: str, design: Design) -> Iterator[None]:
+    """Let the tasks of this process find the design; forget it afterwards."""
+    _keep_design(key, design)
+    try:
+        yield
+    finally:
+        with _DESIGNS_LOCK:
+            _DESIGNS.pop(key, None)

@@ -1,0 +1,80 @@
+"""Workers of a Dask cluster behind `concurrent.futures.Executor`."""
+
+from __future__ import annotations
+
+import logging
+import socket
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from typing import Any
+from urllib.parse import urlsplit
+
+from railquake.errors import InputError
+
+__all__ = ["cluster_executor"]
+
+PATIENCE_S = 5.0  # for a scheduler to answer
+RETRIES = 3  # of a batch whose worker died
+
+
+@contextmanager
+def cluster_executor(address: str, say: Callable[[str], None]) -> Iterator[tuple[Executor, int]]:
+    """Executor on the workers of a scheduler, and the number of their threads.
+
+    Parameters
+    ----------
+    address : str
+        ``"tcp://host:8786"``.
+    say : callable
+        Called with a line if there is no worker yet.
+
+    Raises
+    ------
+    InputError
+        If Dask is not installed or the scheduler does not answer.
+    """
+    try:
+        parts = urlsplit(address)
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host = port = None
+    if not host or not port:
+        raise InputError(
+            f'--scheduler: must be an address such as tcp://host:8786, found "{address}"'
+        )
+    try:
+        import distributed
+    except ImportError:
+        raise InputError(
+            "--scheduler: needs Dask's distributed; install railquake[cluster]"
+        ) from None
+    try:  # a plain connection fails quickly where the client would try for long
+        socket.create_connection((host, port), timeout=PATIENCE_S).close()
+    except OSError as error:
+        raise InputError(
+            f"--scheduler: no scheduler answers at {address} ({error.strerror or error}); start "
+            "one with: dask scheduler"
+        ) from None
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # one line says it all
+    try:
+        connect: Any = distributed.Client
+        client = connect(address, timeout=PATIENCE_S, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(
+            f"--scheduler: what answers at {address} is no Dask scheduler ({_first_line(error)})"
+        ) from None
+    with client:
+        if not client.nthreads():
+            say(f"no worker has joined {address} yet; waiting for one")
+            client.wait_for_workers(1)
+        threads = sum(client.nthreads().values())
+        executor = client.get_executor(pure=False, retries=RETRIES)
+        try:
+            yield executor, threads
+        finally:
+            executor.shutdown(wait=False)
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]

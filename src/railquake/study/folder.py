@@ -1,0 +1,348 @@
+"""The folder of a study: its file, the finished rows in parts, and the table."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+import uuid
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from railquake.errors import InputError
+from railquake.inputs._toml import dumps, read_toml
+from railquake.inputs.units import shown
+from railquake.study.table import distinct
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from railquake.study.file import Study
+
+__all__ = ["STUDY_FILE", "TABLE_FILE", "ResultsFolder", "no_note", "read_parquet"]
+
+STUDY_FILE = "study.toml"
+TABLE_FILE = "runs.parquet"
+TIME_STEP_FILE = "time_step.json"
+PARTS = "parts"
+
+
+def _replace(path: Path, write: Callable[[Path], None]) -> None:
+    """Write a file under a temporary name, make sure that it is on the disk, and move it."""
+    part = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.tmp")
+    try:
+        write(part)
+        with part.open("rb+") as file:
+            os.fsync(file.fileno())
+        part.replace(path)
+        with suppress(OSError):  # not every file system can
+            folder = os.open(path.parent, os.O_RDONLY)
+            try:
+                os.fsync(folder)
+            finally:
+                os.close(folder)
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+def write_parquet(table: pa.Table, path: Path) -> None:
+    """Write a table with checksums of its pages."""
+    import pyarrow.parquet as pq
+
+    pq.write_table(table, path, compression="zstd", write_page_checksum=True)
+
+
+def read_parquet(path: Path) -> pa.Table:
+    """Read a table and check it against its own checksums."""
+    import pyarrow.parquet as pq
+
+    with path.open("rb") as file:
+        return pq.read_table(file, page_checksum_verification=True)
+
+
+def _writable(folder: Path) -> None:
+    """Make sure, before a long run, that the folder can be made and written to."""
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise InputError(f"--out {folder}: is no folder; name a folder")
+    there = folder.absolute()
+    while not os.path.lexists(there):
+        there = there.parent
+    try:
+        with tempfile.TemporaryFile(dir=there):
+            pass
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot be written: {_reason(error)}") from None
+
+
+def _reason(error: OSError) -> str:
+    return error.strerror or str(error)
+
+
+class ResultsFolder:
+    """The folder that a study leaves.
+
+    ``study.toml`` is the study as it was resolved, ``parts/*.parquet`` the finished rows,
+    ``runs.parquet`` the table in the design's order; ``time_step.json`` what was chosen where the
+    study leaves the time step open.
+
+    Parameters
+    ----------
+    path : Path
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.parts = path / PARTS
+        self.kept = 0  # rows of this execution that are on the disk
+
+    def prepare(self, study: Study, notify: Callable[[str], None]) -> None:
+        """Make the folder, or make sure that it holds results of this very study.
+
+        Raises
+        ------
+        InputError
+            If it holds another study, or something else, or cannot be written.
+        """
+        from railquake import __version__
+
+        _writable(self.path)
+        file = self.path / STUDY_FILE
+        tables = {"railquake": __version__, **study.to_dict()}
+        if file.exists():
+            self.compare(tables, notify)
+        elif self.path.exists() and any(
+            (self.path / name).exists() for name in (PARTS, TABLE_FILE)
+        ):
+            raise InputError(
+                f"--out {self.path}: holds results but no {STUDY_FILE} that says of which study; "
+                "take another folder"
+            )
+        try:
+            self.parts.mkdir(parents=True, exist_ok=True)
+            if not file.exists():
+                text = "# Written by railquake: the study of this folder.\n" + dumps(tables)
+                _replace(file, lambda path: _write_text(path, text))
+        except OSError as error:
+            raise InputError(f"--out {self.path}: cannot be written: {_reason(error)}") from None
+
+    def compare(self, tables: Mapping[str, Any], notify: Callable[[str], None]) -> None:
+        """Refuse a study that is not the one of this folder.
+
+        Raises
+        ------
+        InputError
+            Naming what differs.
+        """
+        file = self.path / STUDY_FILE
+        old, new = dict(read_toml(file)), dict(tables)
+        made_by = old.pop("railquake", None)
+        version = new.pop("railquake", None)
+        # written and read once, so that both have the same form
+        differences = _differences(old, _as_read(new))
+        if differences:
+            more = f" and {len(differences) - 4} more" if len(differences) > 4 else ""
+            raise InputError(
+                f"--out {self.path}: holds another study; {'; '.join(differences[:4])}{more}; "
+                "take another folder, or change the study back"
+            )
+        if made_by is not None and version is not None and made_by != version:
+            notify(f"rows in {self.path} were made by railquake {made_by}, new ones by {version}")
+
+    def add(self, rows: Sequence[Mapping[str, Any]], schema: pa.Schema) -> None:
+        """Keep finished rows: a new part.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        import pyarrow as pa
+
+        table = pa.Table.from_pylist(sorted(rows, key=lambda row: row["row"]), schema=schema)
+        path = self.parts / f"{uuid.uuid4().hex}.parquet"
+        try:
+            _replace(path, lambda part: write_parquet(table, part))
+        except OSError as error:
+            raise InputError(
+                f"{self.parts}: cannot be written: {_reason(error)}; {self.kept} rows that "
+                "finished before are kept: make room and run the same command again to go on"
+            ) from None
+        self.kept += len(rows)
+
+    def take_over(
+        self, source: ResultsFolder, schema: pa.Schema, notify: Callable[[str], None]
+    ) -> None:
+        """Copy the rows, and the choice of a time step, of another folder of the same study.
+
+        Raises
+        ------
+        InputError
+            If they cannot be written.
+        """
+        table = distinct(source.load(schema, notify))
+        path = self.parts / f"{uuid.uuid4().hex}.parquet"
+        try:
+            _replace(path, partial(write_parquet, table))
+            if source.time_step() is not None and self.time_step() is None:
+                text = (source.path / TIME_STEP_FILE).read_text(encoding="utf-8")
+                self.note_time_step(json.loads(text))
+        except OSError as error:
+            raise InputError(f"--out {self.path}: cannot be written: {_reason(error)}") from None
+
+    def names(self) -> list[str]:
+        """Names of the parts, the oldest first."""
+        found = []
+        with suppress(FileNotFoundError):
+            for path in self.parts.iterdir():
+                if path.suffix == ".parquet" and not path.name.startswith("."):
+                    found.append((path.stat().st_mtime_ns, path.name))
+        return [name for _, name in sorted(found)]
+
+    def load(
+        self, schema: pa.Schema, notify: Callable[[str], None], names: Iterable[str] | None = None
+    ) -> pa.Table:
+        """All rows of all parts, as they come.
+
+        A part that is damaged is reported and set aside; its rows count as not finished.
+
+        Parameters
+        ----------
+        schema : pyarrow.Schema
+            Of the study.
+        notify : callable
+        names : iterable of str, optional
+            Parts to read; all by default.
+        """
+        import pyarrow as pa
+
+        tables = [schema.empty_table()]
+        for name in self.names() if names is None else names:
+            path = self.parts / name
+            try:
+                found = read_parquet(path)
+                tables.append(found.select(schema.names).cast(schema))
+            except FileNotFoundError:
+                continue
+            except (pa.ArrowException, OSError, KeyError, ValueError):
+                notify(f"{path}: truncated or damaged; its rows are computed again")
+                with suppress(OSError):
+                    path.replace(path.with_suffix(".damaged"))
+        return pa.concat_tables(tables)
+
+    def write_table(
+        self, schema: pa.Schema, hashes: Mapping[int, str | None] | None = None
+    ) -> pa.Table:
+        """Write ``runs.parquet`` from all parts; what it holds.
+
+        Another shard may add a part meanwhile: then it is written again.
+
+        Parameters
+        ----------
+        schema : pyarrow.Schema
+            Of the study.
+        hashes : mapping, optional
+            See `distinct`.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        while True:
+            names = self.names()
+            table = distinct(self.load(schema, no_note, names), hashes)
+            try:
+                _replace(self.path / TABLE_FILE, partial(write_parquet, table))
+            except OSError as error:
+                raise InputError(
+                    f"{self.path / TABLE_FILE}: cannot be written: {_reason(error)}; all rows are "
+                    f"kept in {self.parts}: make room and run the same command again"
+                ) from None
+            if names == self.names():
+                return table
+
+    def time_step(self) -> float | None:
+        """The time step that was chosen for the study, s.
+
+        Raises
+        ------
+        InputError
+            If its file is damaged.
+        """
+        file = self.path / TIME_STEP_FILE
+        try:
+            return float(json.loads(file.read_text(encoding="utf-8"))["dt_s"])
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError, KeyError, TypeError):
+            raise InputError(
+                f"{file}: is damaged; delete the folder and run the study again"
+            ) from None
+
+    def note_time_step(self, facts: Mapping[str, Any]) -> float:
+        """Note the time step that was chosen; what holds: another shard may have been faster."""
+        file = self.path / TIME_STEP_FILE
+        text = json.dumps(dict(facts), indent=2) + "\n"
+        draft = file.with_name(f".{file.name}.{uuid.uuid4().hex[:8]}.tmp")
+        try:
+            _write_text(draft, text)
+            with suppress(FileExistsError):
+                os.link(draft, file)
+        except OSError as error:
+            raise InputError(f"{file}: cannot be written: {_reason(error)}") from None
+        finally:
+            with suppress(OSError):
+                draft.unlink(missing_ok=True)
+        found = self.time_step()
+        assert found is not None  # it has just been written
+        return found
+
+
+def no_note(_: str) -> None:
+    """Say nothing."""
+
+
+def _write_text(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
+
+
+def _as_read(tables: Mapping[str, Any]) -> dict[str, Any]:
+    import tomllib
+
+    return tomllib.loads(dumps(tables))
+
+
+def _flat(value: Any, path: str = "") -> dict[str, Any]:
+    if isinstance(value, Mapping) and value:
+        return {k: v for key, item in value.items()
+                for k, v in _flat(item, f"{path}.{key}" if path else key).items()}  # fmt: skip
+    if isinstance(value, list) and value and all(isinstance(item, Mapping) for item in value):
+        named = {str(item.get("name", k)): item for k, item in enumerate(value)}
+        return {k: v for key, item in named.items()
+                for k, v in _flat(item, f"{path}.{key}").items()}  # fmt: skip
+    return {path: value}
+
+
+def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
+    """What differs between two studies, a phrase each."""
+    a, b = _flat(old), _flat(new)
+    a, b = ({k: v for k, v in x.items() if not k.endswith(".name")} for x in (a, b))
+    found = []
+    for key in dict.fromkeys((*a, *b)):
+        if key not in b:
+            found.append(f"{key} was {shown(a[key])}, now is not there")
+        elif key not in a:
+            found.append(f"{key} was not there, now is {shown(b[key])}")
+        elif a[key] != b[key]:
+            found.append(f"{key} was {shown(a[key])}, now is {shown(b[key])}")
+    if not found and _as_listed(old) != _as_listed(new):
+        found.append("the order of axes, levels or motions was another")
+    return found
+
+
+def _as_listed(tables: Mapping[str, Any]) -> str:
+    return json.dumps({key: value for key, value in tables.items() if key != "base"})

@@ -1,0 +1,233 @@
+"""A suite from a manifest: a CSV file with a row for each record and its scale factor."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from railquake.errors import InputError
+from railquake.suite.model import Suite, SuiteMember
+
+__all__ = ["Row", "read_manifest", "read_rows", "suite_of_rows"]
+
+REQUIRED = ("file", "scale_factor")
+"""Columns that every manifest has; others that are not known here are left alone."""
+READER = ("channel", "units", "dt")
+"""Columns that say how a file is read, where it does not say so itself."""
+MOST_ROWS = 100_000
+_RSN = re.compile(r"rsn0*([0-9]+)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of a manifest.
+
+    Parameters
+    ----------
+    place : str
+        File and line, for messages.
+    file : str
+        As written.
+    scale_factor : float
+        Over zero.
+    cells : dict
+        All cells of the row that are not empty, by column.
+    """
+
+    place: str
+    file: str
+    scale_factor: float
+    cells: dict[str, str] = field(default_factory=dict)
+
+
+def read_manifest(path: Path, records: Path | None) -> Suite:
+    """Read a suite's manifest and find its records.
+
+    Parameters
+    ----------
+    path : Path
+        CSV with the columns file and scale_factor.  Optional: name; channel, units and dt, as in
+        ``[motion]``; rsn, which the number in the file's name must agree with.  Other columns are
+        left alone, lines that start with # are remarks.
+    records : Path or None
+        Folder that relative files start from; the manifest's own folder if None.
+
+    Returns
+    -------
+    Suite
+        In the order of the rows.
+
+    Raises
+    ------
+    InputError
+        If the manifest or a record is missing, or a row is wrong: file, line and column.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such manifest of a suite; check the path") from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "is not text (UTF-8)"
+        raise InputError(f"{path}: cannot be read: {reason}") from None
+    return suite_of_rows(path.stem, str(path), read_rows(text, str(path)), records or path.parent)
+
+
+def read_rows(text: str, where: str) -> tuple[Row, ...]:
+    """The rows of a manifest, each checked by itself.
+
+    Parameters
+    ----------
+    text : str
+        The file's content.
+    where : str
+        The file's path, for messages.
+
+    Raises
+    ------
+    InputError
+        Naming the line and the column.
+    """
+    lines = _lines(text, where)
+    number, header = next(lines, (0, []))
+    if not number:
+        raise InputError(f"{where}: is empty; a header with file,scale_factor and rows are needed")
+    for column in REQUIRED:
+        if column not in header:
+            raise InputError(
+                f"{where}, line {number}: column {column} is missing among {', '.join(header)}"
+            )
+    for column in header:
+        if column and header.count(column) > 1:
+            raise InputError(f"{where}, line {number}: column {column} is there twice")
+    rows: list[Row] = []
+    for number, cells in lines:
+        place = f"{where}, line {number}"
+        if len(cells) != len(header):
+            raise InputError(
+                f"{place}: {len(cells)} cells under {len(header)} columns; "
+                "a text with a comma needs quotation marks"
+            )
+        rows.append(_row(dict(zip(header, cells, strict=True)), place))
+        if len(rows) > MOST_ROWS:
+            raise InputError(f"{place}: over {MOST_ROWS} rows")
+    if not rows:
+        raise InputError(f"{where}: has a header but no rows; a row for each record is needed")
+    return tuple(rows)
+
+
+def _lines(text: str, where: str) -> Iterator[tuple[int, list[str]]]:
+    """Number and cells of every line that is neither blank nor a remark."""
+    reader = csv.reader(io.StringIO(text), strict=True)
+    try:
+        for cells in reader:
+            stripped = [cell.strip() for cell in cells]
+            if any(stripped) and not stripped[0].startswith("#"):
+                yield reader.line_num, stripped
+    except csv.Error as error:
+        raise InputError(f"{where}, line {reader.line_num}: is no CSV: {error}") from None
+
+
+def _row(cells: dict[str, str], place: str) -> Row:
+    file = cells["file"]
+    if not file:
+        raise InputError(f"{place}: file: is empty; a record's file is needed")
+    factor = _number(cells["scale_factor"], f"{place}: scale_factor")
+    given = _RSN.search(Path(file).name)
+    wanted = cells.get("rsn", "")
+    if wanted:
+        if not (wanted.isascii() and wanted.isdigit()):
+            raise InputError(f'{place}: rsn: must be a whole number, found "{wanted}"')
+        if given is not None and int(given[1]) != int(wanted):
+            raise InputError(
+                f"{place}: rsn: is {int(wanted)}, but the file is called {file}; correct one of them"
+            )
+    return Row(place, file, factor, {key: text for key, text in cells.items() if key and text})
+
+
+def _number(text: str, what: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise InputError(f'{what}: must be a number, found "{text}"') from None
+    if not (math.isfinite(value) and value > 0.0):
+        raise InputError(f"{what}: must be finite and over zero, found {text}")
+    return value
+
+
+def suite_of_rows(name: str, where: str, rows: tuple[Row, ...], records: Path) -> Suite:
+    """Find each row's record in the folder.
+
+    Raises
+    ------
+    InputError
+        If a record is there twice, or missing: the first is named, all are counted.
+    """
+    if not records.is_dir():
+        what = "is no folder" if records.exists() else "there is no such folder"
+        raise InputError(f"{records}: {what}; give the one that holds the records")
+    motions: list[dict[str, Any]] = []
+    seen: dict[tuple[object, ...], Row] = {}
+    for row in rows:
+        path = (records / row.file).absolute()
+        key = (path.resolve(), row.cells.get("channel"))
+        if key in seen:
+            raise InputError(
+                f"{row.place}: file: {row.file} is there already "
+                f"({seen[key].place.rpartition(', ')[2]}); a record counts once"
+            )
+        seen[key] = row
+        motions.append({"record": str(path)} | _reading(row))
+    missing = [
+        row for row, motion in zip(rows, motions, strict=True) if not _is_file(motion["record"])
+    ]
+    if missing:
+        raise InputError(_missing(missing, len(rows), records))
+    return Suite(
+        name,
+        tuple(
+            SuiteMember(label, motion, row.scale_factor)
+            for label, motion, row in zip(_labels(rows), motions, rows, strict=True)
+        ),
+    )
+
+
+def _is_file(path: str) -> bool:
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        return False
+
+
+def _missing(missing: list[Row], count: int, records: Path) -> str:
+    first = missing[0]
+    others = f" ({len(missing)} of {count} are missing)" if len(missing) > 1 else ""
+    return (
+        f"{first.place}: file: {first.file} is not in {records}{others}; "
+        "give the folder of the records with --records"
+    )
+
+
+def _reading(row: Row) -> dict[str, Any]:
+    """What a row says about reading its file, as in ``[motion]``."""
+    table: dict[str, Any] = {key: row.cells[key] for key in READER if key in row.cells}
+    if table.get("channel", "").isdigit():
+        table["channel"] = int(table["channel"])
+    if "dt" in table:
+        table["dt"] = _number(table["dt"], f"{row.place}: dt")
+    return table
+
+
+def _labels(rows: tuple[Row, ...]) -> list[str]:
+    """A name for each row: its own, its file's, or with folder and channel where that is not it."""
+    labels = [row.cells.get("name") or Path(row.file).stem for row in rows]
+    for make in (lambda row: row.file, lambda row: f"{row.file} {row.cells.get('channel', '')}"):
+        twice = {label for label in labels if labels.count(label) > 1}
+        labels = [make(row) if label in twice else label
+                  for label, row in zip(labels, rows, strict=True)]  # fmt: skip
+    return labels
