@@ -440,8 +440,8 @@ def write_csv(
     ----------
     path : str or Path
     curves : mapping of str to list of Fragility
-        By the component's identifier (a dash in it becomes a point): its limit states in order of severity (onset, then
-        derailed), all against one measure.
+        By the component's identifier (a dash in it becomes a point): its limit states in order of
+        severity (onset, then derailed), all against one measure.
     first_period_s : float, optional
         Period of the spectral acceleration, where a curve is against ``sa_t1``.
 

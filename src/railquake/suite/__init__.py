@@ -8,10 +8,29 @@ from pathlib import Path
 
 from railquake.errors import InputError
 from railquake.suite.built_in import PAPER_SUITE, SYNTHETIC_SUITE, paper_suite, synthetic_suite
+from railquake.suite.hazard import Hazard, TargetSpectrum, hazard_names, load_hazard, read_hazard
 from railquake.suite.manifest import read_manifest
 from railquake.suite.model import Suite, SuiteMember
+from railquake.suite.selection import Selection, manifest_text, select_records
+from railquake.suite.spectra import SuiteSpectra, spectral_acceleration, suite_spectra
 
-__all__ = ["SUITES", "Suite", "SuiteMember", "load_suite"]
+__all__ = [
+    "SUITES",
+    "Hazard",
+    "Selection",
+    "Suite",
+    "SuiteMember",
+    "SuiteSpectra",
+    "TargetSpectrum",
+    "hazard_names",
+    "load_hazard",
+    "load_suite",
+    "manifest_text",
+    "read_hazard",
+    "select_records",
+    "spectral_acceleration",
+    "suite_spectra",
+]
 
 SUITES = (PAPER_SUITE, SYNTHETIC_SUITE)
 """Names of the suites that are built in."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
-import io
 import math
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from typing import Any
 from railquake.errors import InputError
 from railquake.suite.model import Suite, SuiteMember
 
-__all__ = ["Row", "read_manifest", "read_rows", "suite_of_rows"]
+__all__ = ["Row", "is_file", "read_manifest", "read_rows", "suite_of_rows"]
 
 REQUIRED = ("file", "scale_factor")
 """Columns that every manifest has; others that are not known here are left alone."""
@@ -44,6 +44,11 @@ class Row:
     file: str
     scale_factor: float
     cells: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def label(self) -> str:
+        """The row's name, else its file's without folder and ending."""
+        return self.cells.get("name") or Path(self.file).stem
 
 
 def read_manifest(path: Path, records: Path | None) -> Suite:
@@ -75,7 +80,7 @@ def read_manifest(path: Path, records: Path | None) -> Suite:
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "is not text (UTF-8)"
         raise InputError(f"{path}: cannot be read: {reason}") from None
-    return suite_of_rows(path.stem, str(path), read_rows(text, str(path)), records or path.parent)
+    return suite_of_rows(path.stem, read_rows(text, str(path)), records or path.parent)
 
 
 def read_rows(text: str, where: str) -> tuple[Row, ...]:
@@ -100,11 +105,12 @@ def read_rows(text: str, where: str) -> tuple[Row, ...]:
     for column in REQUIRED:
         if column not in header:
             raise InputError(
-                f"{where}, line {number}: column {column} is missing among {', '.join(header)}"
+                f"{where}, line {number}: column {column} is missing among "
+                f"{', '.join(map(repr, header))}"
             )
     for column in header:
         if column and header.count(column) > 1:
-            raise InputError(f"{where}, line {number}: column {column} is there twice")
+            raise InputError(f"{where}, line {number}: column {column!r} is there twice")
     rows: list[Row] = []
     for number, cells in lines:
         place = f"{where}, line {number}"
@@ -123,11 +129,13 @@ def read_rows(text: str, where: str) -> tuple[Row, ...]:
 
 def _lines(text: str, where: str) -> Iterator[tuple[int, list[str]]]:
     """Number and cells of every line that is neither blank nor a remark."""
-    reader = csv.reader(io.StringIO(text), strict=True)
+    # remarks become blank lines first: a quotation mark in one means nothing
+    lines = ("" if line.startswith("#") else line for line in text.splitlines())
+    reader = csv.reader(lines, strict=True)
     try:
         for cells in reader:
             stripped = [cell.strip() for cell in cells]
-            if any(stripped) and not stripped[0].startswith("#"):
+            if any(stripped):
                 yield reader.line_num, stripped
     except csv.Error as error:
         raise InputError(f"{where}, line {reader.line_num}: is no CSV: {error}") from None
@@ -135,17 +143,18 @@ def _lines(text: str, where: str) -> Iterator[tuple[int, list[str]]]:
 
 def _row(cells: dict[str, str], place: str) -> Row:
     file = cells["file"]
-    if not file:
-        raise InputError(f"{place}: file: is empty; a record's file is needed")
+    if not file or not file.isprintable():
+        raise InputError(f"{place}: file: a record's file is needed, found {file!r}")
     factor = _number(cells["scale_factor"], f"{place}: scale_factor")
     given = _RSN.search(Path(file).name)
     wanted = cells.get("rsn", "")
     if wanted:
         if not (wanted.isascii() and wanted.isdigit()):
-            raise InputError(f'{place}: rsn: must be a whole number, found "{wanted}"')
+            raise InputError(f"{place}: rsn: must be a whole number, found {wanted!r}")
         if given is not None and int(given[1]) != int(wanted):
             raise InputError(
-                f"{place}: rsn: is {int(wanted)}, but the file is called {file}; correct one of them"
+                f"{place}: rsn: is {int(wanted)}, but the file is called {file}; "
+                "correct one of them"
             )
     return Row(place, file, factor, {key: text for key, text in cells.items() if key and text})
 
@@ -154,14 +163,30 @@ def _number(text: str, what: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise InputError(f'{what}: must be a number, found "{text}"') from None
+        raise InputError(f"{what}: must be a number, found {text!r}") from None
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(f"{what}: must be finite and over zero, found {text}")
     return value
 
 
-def suite_of_rows(name: str, where: str, rows: tuple[Row, ...], records: Path) -> Suite:
+def suite_of_rows(
+    name: str,
+    rows: tuple[Row, ...],
+    records: Path,
+    missing: Callable[[list[Row], int, Path], str] | None = None,
+) -> Suite:
     """Find each row's record in the folder.
+
+    Parameters
+    ----------
+    name : str
+        Of the suite.
+    rows : tuple of Row
+        Its members.
+    records : Path
+        Folder that relative files start from.
+    missing : callable, optional
+        Makes the message from the rows without a record, the number of rows and the folder.
 
     Raises
     ------
@@ -183,11 +208,9 @@ def suite_of_rows(name: str, where: str, rows: tuple[Row, ...], records: Path) -
             )
         seen[key] = row
         motions.append({"record": str(path)} | _reading(row))
-    missing = [
-        row for row, motion in zip(rows, motions, strict=True) if not _is_file(motion["record"])
-    ]
-    if missing:
-        raise InputError(_missing(missing, len(rows), records))
+    gaps = [row for row, table in zip(rows, motions, strict=True) if not is_file(table["record"])]
+    if gaps:
+        raise InputError((missing or _missing)(gaps, len(rows), records))
     return Suite(
         name,
         tuple(
@@ -197,10 +220,11 @@ def suite_of_rows(name: str, where: str, rows: tuple[Row, ...], records: Path) -
     )
 
 
-def _is_file(path: str) -> bool:
+def is_file(path: str | Path) -> bool:
+    """Whether there is such a file; False for a name that no file can have."""
     try:
         return Path(path).is_file()
-    except (OSError, ValueError):  # a name that no file can have
+    except (OSError, ValueError):
         return False
 
 
@@ -225,9 +249,11 @@ def _reading(row: Row) -> dict[str, Any]:
 
 def _labels(rows: tuple[Row, ...]) -> list[str]:
     """A name for each row: its own, its file's, or with folder and channel where that is not it."""
-    labels = [row.cells.get("name") or Path(row.file).stem for row in rows]
-    for make in (lambda row: row.file, lambda row: f"{row.file} {row.cells.get('channel', '')}"):
-        twice = {label for label in labels if labels.count(label) > 1}
-        labels = [make(row) if label in twice else label
-                  for label, row in zip(labels, rows, strict=True)]  # fmt: skip
+    labels = [row.label for row in rows]
+    for fuller in (
+        [row.file for row in rows],
+        [f"{row.file} {row.cells.get('channel', '')}".rstrip() for row in rows],
+    ):
+        count = Counter(labels)
+        labels = [b if count[a] > 1 else a for a, b in zip(labels, fuller, strict=True)]
     return labels

@@ -1,7 +1,7 @@
 """Ground motions: records of many formats, synthetic motions, response spectra."""
 
 from railquake.inputs.motion.motion import STANDARD_GRAVITY, GroundMotion
-from railquake.inputs.motion.read import FORMATS, read_motion
+from railquake.inputs.motion.read import FORMATS, RecordContents, read_motion, record_contents
 from railquake.inputs.motion.spectrum import (
     ResponseSpectrum,
     oscillator_response,
@@ -17,10 +17,12 @@ __all__ = [
     "FORMATS",
     "STANDARD_GRAVITY",
     "GroundMotion",
+    "RecordContents",
     "ResponseSpectrum",
     "SyntheticParameters",
     "oscillator_response",
     "read_motion",
+    "record_contents",
     "response_spectrum",
     "synthetic_from_mapping",
     "synthetic_motion",

@@ -50,6 +50,36 @@ FORMATS = tuple(entry.name for entry in _FORMATS)
 """Names of the formats that `read_motion` tells apart."""
 
 
+@dataclass(frozen=True)
+class RecordContents:
+    """What a record file holds, its numbers not read yet.
+
+    Parameters
+    ----------
+    format : str
+        One of `FORMATS`.
+    channels : tuple of (int or None, str)
+        Number and label of each channel; a file of one component may give neither.
+    """
+
+    format: str
+    channels: tuple[tuple[int | None, str], ...]
+
+
+def record_contents(path: str | os.PathLike[str]) -> RecordContents:
+    """Tell a record file's format and list its channels.
+
+    Raises
+    ------
+    InputError
+        If the file is of no known format or its header is damaged.
+    """
+    record = open_record(path)
+    entry = _format_of(record)
+    found = entry.channels(record, Options())
+    return RecordContents(entry.name, tuple((channel.number, channel.label) for channel in found))
+
+
 def read_motion(
     path: str | os.PathLike[str],
     *,

@@ -1,0 +1,101 @@
+"""Which files of a folder are taken for horizontal components of records."""
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from railquake.errors import InputError
+from railquake.suite.records import find_components
+from record_folders import short_motion, write_at2
+
+
+def kinds(folder: Path) -> tuple[list[str], dict[str, str]]:
+    components, skipped = find_components(folder)
+    return [one.file for one in components], {one.file: one.kind for one in skipped}
+
+
+def test_files_that_are_no_records_are_skipped_and_told(tmp_path: Path) -> None:
+    motion = short_motion(1)
+    write_at2(tmp_path / "b.AT2", motion)
+    write_at2(tmp_path / "deep" / "a.AT2", short_motion(2))
+    write_at2(tmp_path / "copy.AT2", motion)
+    write_at2(tmp_path / ".hidden.AT2", short_motion(3))
+    text = (tmp_path / "b.AT2").read_text()
+    (tmp_path / "cut.AT2").write_text(text[: len(text) // 2])
+    (tmp_path / "readme.txt").write_text("nothing of note\n")
+    (tmp_path / "picture.png").write_bytes(b"\x89PNG\r\n\x1a\n\x00\x00")
+    (tmp_path / "uhs.csv").write_text("period_s,sa_g\n0.1,0.5\n0.2,0.6\n0.3,0.4\n")
+    (tmp_path / "empty.AT2").write_text("")
+    zero = "".join("0.0\n" for _ in range(motion.npts))
+    head = "\n".join(text.splitlines()[:4])
+    (tmp_path / "zero.AT2").write_text(f"{head}\n{zero}")
+    taken, skipped = kinds(tmp_path)
+    assert taken == ["b.AT2", "deep/a.AT2"]
+    assert skipped == {
+        "copy.AT2": "copy of another",
+        "cut.AT2": "damaged or incomplete",
+        "empty.AT2": "no record",
+        "picture.png": "no record",
+        "readme.txt": "no record",
+        "uhs.csv": "plain columns of numbers",
+        "zero.AT2": "all zero",
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "vertical"),
+    [
+        ("RSN6_IMPVALL.I_I-ELC-UP.AT2", True),
+        ("RSN802_LOMAP_STG-UP.AT2", True),
+        ("RSN1182_CHICHI_CHY006-V.AT2", True),
+        ("RSN182_IMPVALL.H_H-E07DWN.AT2", True),
+        ("RSN6_IMPVALL.I_I-ELC180.AT2", False),
+        ("RSN1182_CHICHI_CHY006-E.AT2", False),
+        ("RSN1106_KOBE_KJM000.AT2", False),
+        ("cup.AT2", False),
+    ],
+)
+def test_vertical_components_are_told_by_the_files_name(
+    tmp_path: Path, name: str, vertical: bool
+) -> None:
+    write_at2(tmp_path / name, short_motion(1))
+    write_at2(tmp_path / "other.AT2", short_motion(2))
+    taken, skipped = kinds(tmp_path)
+    assert (name in taken) is not vertical
+    assert skipped == ({name: "vertical component"} if vertical else {})
+
+
+def test_a_file_of_three_channels_gives_its_two_horizontal_ones(shared: Path) -> None:
+    components, skipped = find_components(shared / "records" / "formats")
+    channels = [(one.file, one.channel) for one in components if one.channel is not None]
+    assert channels == [("csmip_ce36456p.V2", 1), ("csmip_ce36456p.V2", 3)]
+    assert Counter(one.kind for one in skipped)["vertical component"] == 1
+
+
+def test_every_damaged_file_of_the_reference_data_is_skipped(shared: Path) -> None:
+    _, skipped = find_components(shared / "records" / "formats")
+    bad = {path.name for path in (shared / "records" / "formats" / "bad").iterdir()}
+    assert bad == {Path(one.file).name for one in skipped if one.file.startswith("bad/")}
+
+
+def test_a_folder_without_records_is_refused_in_one_line(tmp_path: Path) -> None:
+    for told in ("it is empty", "1 x no record"):
+        with pytest.raises(InputError) as caught:
+            find_components(tmp_path)
+        assert "holds no usable record" in str(caught.value) and told in str(caught.value)
+        assert "\n" not in str(caught.value)
+        (tmp_path / "readme.txt").write_text("nothing\n")
+
+
+def test_a_folder_that_is_none_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="there is no such folder"):
+        find_components(tmp_path / "not")
+
+
+def test_progress_is_told_file_by_file(tmp_path: Path) -> None:
+    for seed in (1, 2):
+        write_at2(tmp_path / f"{seed}.AT2", short_motion(seed))
+    calls: list[tuple[int, int]] = []
+    find_components(tmp_path, lambda done, total: calls.append((done, total)))
+    assert calls == [(1, 2), (2, 2)]
