@@ -21,13 +21,10 @@ if TYPE_CHECKING:
 __all__ = ["first_period", "with_spectral_acceleration"]
 
 DAMPING = 0.05
-_FACTORS = (
-    "row",
-    "level",
-    "scale",
-    "vehicle.speed",
-    "scenario_hash",
-)  # do not change Sa(T1) / scale
+MOST = 1000  # different piers and motions that are looked at
+# what does not change Sa(T1) over the scale
+_OTHERS = ("row", "level", "scale")
+_OTHER_SECTIONS = ("vehicle.", "wheelrail.", "solver.", "motion.scale")
 
 
 def first_period(pier: Pier) -> float:
@@ -65,19 +62,22 @@ def with_spectral_acceleration(
     -------
     DataFrame
         With the columns ``t1_s`` and ``sa_t1_m_s2`` (pseudo-spectral acceleration of the motion as
-        it was scaled); NaN at grade, and where the scenario cannot be made any more.
+        it was scaled); NaN at grade, where the scenario cannot be made any more, and throughout
+        where piers and motions are more than `MOST`.
     """
     from railquake.suite import spectral_acceleration
 
     names = list(table.columns)
     design = names[: names.index("scenario_hash")] if "scenario_hash" in names else []
-    keys = [name for name in design if name not in _FACTORS]
+    keys = [n for n in design if n not in _OTHERS and not n.startswith(_OTHER_SECTIONS)]
+    if not keys or len(table.drop_duplicates(keys)) > MOST:
+        return table.assign(t1_s=math.nan, sa_t1_m_s2=math.nan)
     known: dict[Any, tuple[float, float]] = {}
     spectra: dict[Any, float] = {}
     found = []
     for row in table.to_dict("records"):
         scale = abs(float(row["scale"]))
-        key = tuple(row[name] for name in keys) if keys else row["row"]
+        key = tuple(row[name] for name in keys)
         if key not in known and scale > 0.0:
             known[key] = _of(row["row"], scale, scenario_of, spectra, spectral_acceleration)
         period, unit = known.get(key, (math.nan, math.nan))
