@@ -28,6 +28,7 @@ __all__ = [
 ELASTIC, NONLINEAR = "coupled-elastic", "coupled-nonlinear"
 DECOUPLED = {ELASTIC: "decoupled-elastic", NONLINEAR: "decoupled-nonlinear"}
 AT_GRADE = "at-grade"
+PIERS = {ELASTIC: "elastic pier", NONLINEAR: "nonlinear pier"}
 MODELS = (ELASTIC, NONLINEAR, *DECOUPLED.values(), AT_GRADE)
 
 BORNE_OUT, IN_PART, NOT_BORNE_OUT, NOT_TESTED = (
@@ -42,7 +43,7 @@ QUANTITIES = (
 )  # fmt: skip
 NAMES = {
     "pbd_m": "PBD", "pbv_m_s": "PBV", "pba_m_s2": "PBA", "pga_m_s2": "PGA", "pgv_m_s": "PGV",
-    "sa_t1_m_s2": "Sa(T₁)", "top_rotation_peak_rad": "the top's rotation",
+    "sa_t1_m_s2": "Sa(T₁)", "top_rotation_peak_rad": "the top’s rotation",
     "uplift_ratio": "uplift", "lateral_force_filtered_peak_n": "the lateral force",
 }  # fmt: skip
 
@@ -268,6 +269,12 @@ def _split(found: Comparison) -> str:
     return f"{way} for {most} of {found.records} records, {chance(found.p_value)}"
 
 
+def _sentence(parts: list[str]) -> str:
+    """Parts as one sentence."""
+    text = "; ".join(parts)
+    return f"{text[0].upper()}{text[1:]}."
+
+
 def _runs(count: int, of: int) -> str:
     return f"{count} of {of} runs"
 
@@ -296,18 +303,20 @@ def _nonlinear(evidence: Evidence) -> Answer:
         0: "No clear influence on the uplift",
         1: "Yes: as a rule it raises the uplift",
     }[sign]
+    one, other = evidence.outcomes[NONLINEAR], evidence.outcomes[ELASTIC]
+    if sign < 0 and one.onset > other.onset:
+        short += ", though more runs reach the onset"
     sentence = (
         f"With a nonlinear pier the peak uplift is {interval(uplift.median)} times that with an "
         f"elastic one (median of {uplift.pairs} pairs of runs that differ in nothing else, with "
         f"its 95 % interval); {_split(uplift)}."
     )
     if not velocity.missing:
-        sentence += f" The bridge's peak velocity is {interval(velocity.median)} times as high."
+        sentence += f" The bridge’s peak velocity is {interval(velocity.median)} times as high."
     if sign and (uplift.above if sign < 0 else uplift.below):
         against = uplift.above if sign < 0 else uplift.below
         way = "higher" if sign < 0 else "lower"
         sentence += f" It is no rule without exception: in {against} pairs it is {way}."
-    one, other = evidence.outcomes[NONLINEAR], evidence.outcomes[ELASTIC]
     sentence += (
         f" The onset of slide-off is reached in {_runs(one.onset, one.runs)} with the nonlinear "
         f"pier and in {other.onset} of {other.runs} with the elastic one; {one.derailed} and "
@@ -330,7 +339,7 @@ def _decoupled(evidence: Evidence) -> Answer:
         lift = found["uplift_ratio"]
         parts.append(
             f"With the {word} pier the decoupled model gives {interval(found['pbd_m'].median)} "
-            f"times the coupled one's peak displacement, {interval(found['pba_m_s2'].median)} "
+            f"times the coupled one’s peak displacement, {interval(found['pba_m_s2'].median)} "
             f"times its acceleration and {interval(lift.median)} times its uplift (medians of "
             f"{lift.pairs} pairs; single pairs scatter by a factor of about "
             f"{number(math.exp(found['pbd_m'].scatter))} in displacement and "
@@ -409,7 +418,7 @@ def _velocity_goes_with_uplift(evidence: Evidence) -> Finding:
         assert item is not None
         values.append(item.spearman)
         words.append(
-            f"{name}: Spearman's ρ {interval(item.spearman)}, scatter about a power law β "
+            f"{PIERS[name]}: Spearman’s ρ {interval(item.spearman)}, scatter about a power law β "
             f"{interval(item.dispersion)}"
         )
     good = [estimate.certain and estimate.low > 0.7 for estimate in values]
@@ -419,12 +428,12 @@ def _velocity_goes_with_uplift(evidence: Evidence) -> Finding:
     why = ""
     if verdict != BORNE_OUT:
         why = "The intervals of ρ do not lie above 0.7, which is taken as well correlated here."
-    return Finding(claim, verdict, "; ".join(words) + ".", why)
+    return Finding(claim, verdict, _sentence(words), why)
 
 
 def _velocity_is_better(evidence: Evidence) -> Finding:
     claim = (
-        "Peak bridge velocity is the better measure: uplift depends less on the ground motion's "
+        "Peak bridge velocity is the better measure: uplift depends less on the ground motion’s "
         "peaks (PGA, PGV), and a single spike of acceleration (PBA) does not derail."
     )
     words: list[str] = []
@@ -436,7 +445,7 @@ def _velocity_is_better(evidence: Evidence) -> Finding:
         for difference in over_all.differences:
             inside = within.against(difference.other) if within is not None else None
             signs = [difference.spearman] + ([inside.spearman] if inside is not None else [])
-            label = f"{NAMES.get(difference.other, difference.other)} ({name})"
+            label = f"{NAMES.get(difference.other, difference.other)} ({PIERS[name]})"
             if any(s.below(0.0) for s in signs):
                 worse.append(label)
             elif any(s.above(0.0) for s in signs):
@@ -447,7 +456,7 @@ def _velocity_is_better(evidence: Evidence) -> Finding:
             f"{NAMES.get(d.other, d.other)} {interval(d.spearman)}" for d in over_all.differences
         )
         if listed:
-            words.append(f"{name}: ρ of PBV less that of {listed}")
+            words.append(f"{PIERS[name]}: ρ of PBV less that of {listed}")
         if within is not None and within.differences:
             listed = ", ".join(
                 f"{NAMES.get(d.other, d.other)} {interval(d.spearman)}" for d in within.differences
@@ -456,7 +465,7 @@ def _velocity_is_better(evidence: Evidence) -> Finding:
     if not words:
         return Finding(claim, NOT_TESTED, "There are too few coupled runs to compare measures.")
     if better and not worse and not open_ones:
-        return Finding(claim, BORNE_OUT, "; ".join(words) + ".")
+        return Finding(claim, BORNE_OUT, _sentence(words))
     verdict = IN_PART if better else NOT_BORNE_OUT
     why = []
     if open_ones:
@@ -466,7 +475,7 @@ def _velocity_is_better(evidence: Evidence) -> Finding:
         )
     if worse:
         why.append(f"{_listed(worse)} goes better with uplift than PBV does")
-    return Finding(claim, verdict, "; ".join(words) + ".", ". ".join(why) + ".")
+    return Finding(claim, verdict, _sentence(words), ". ".join(why) + ".")
 
 
 def _listed(items: list[str]) -> str:
@@ -564,7 +573,7 @@ def _decoupled_acceleration(evidence: Evidence) -> Finding:
     smaller = found.median.value < shift.median.value
     if larger and smaller:
         apart = found.median.high < shift.median.value
-        remark = "" if apart else "The two differences lie within each other's intervals."
+        remark = "" if apart else "The two differences lie within each other’s intervals."
         return Finding(claim, BORNE_OUT if apart else IN_PART, words, remark)
     if larger:
         return Finding(claim, IN_PART, words, "They are larger, by no less than displacements are.")
@@ -573,7 +582,7 @@ def _decoupled_acceleration(evidence: Evidence) -> Finding:
 
 def _decoupled_rotation(evidence: Evidence) -> Finding:
     claim = (
-        "The top's rotation differs much, and with an elastic pier the decoupled model gives "
+        "The top’s rotation differs much, and with an elastic pier the decoupled model gives "
         "larger uplift and more derailments."
     )
     turn = evidence.ratio("top_rotation_peak_rad", DECOUPLED[ELASTIC], ELASTIC)
@@ -603,15 +612,17 @@ def _conservative(evidence: Evidence) -> Finding:
     if not known:
         return Finding(claim, NOT_TESTED, f"{found[0].missing.capitalize()}.")
     words = "; ".join(
-        f"{item.reference}: uplift {_ratio_words(item)}, understated in {item.below} of "
+        f"{PIERS[item.reference]}: uplift {_ratio_words(item)}, understated in {item.below} of "
         f"{item.pairs} pairs"
         for item in known
     )
     signs = [_direction(item) for item in known]
     if all(sign > 0 for sign in signs):
-        return Finding(claim, BORNE_OUT, words + ".")
+        return Finding(claim, BORNE_OUT, _sentence([words]))
     verdict = IN_PART if any(sign > 0 for sign in signs) else NOT_BORNE_OUT
-    return Finding(claim, verdict, words + ".", "The uplift is not clearly larger throughout.")
+    return Finding(
+        claim, verdict, _sentence([words]), "The uplift is not clearly larger throughout."
+    )
 
 
 def _slide_off(evidence: Evidence) -> Finding:
@@ -630,7 +641,7 @@ def _slide_off(evidence: Evidence) -> Finding:
     verdict = IN_PART if "slide-off" in modes else NOT_BORNE_OUT
     return Finding(
         claim, verdict, words,
-        "A run counts as overturned once the vehicle's centre of gravity is beyond a rail while "
+        "A run counts as overturned once the vehicle’s centre of gravity is beyond a rail while "
         "the onset holds; without bump stops the car body sways further than a real one, and may "
         "bring it there before the flange tip has crossed the rail.",
     )  # fmt: skip
@@ -649,7 +660,7 @@ def _force_is_capped(evidence: Evidence) -> Finding:
     if not known:
         return Finding(claim, NOT_TESTED, "There are too few coupled runs.")
     words = "; ".join(
-        f"{name}: exponent {interval(found.slope_beyond)} beyond the knee against "
+        f"{PIERS[name]}: exponent {interval(found.slope_beyond)} beyond the knee against "
         f"{interval(found.slope_before)} before, {interval(found.level)} times friction × weight "
         f"there, at most {number(found.highest)}"
         for name, found in known
@@ -657,7 +668,7 @@ def _force_is_capped(evidence: Evidence) -> Finding:
     capped = [found.levels_off for _, found in known]
     near = [found.level.value <= 1.3 for _, found in known]
     if all(capped) and all(near):
-        return Finding(claim, BORNE_OUT, words + ".")
+        return Finding(claim, BORNE_OUT, _sentence([words]))
     slower = [found.slope_beyond.high < found.slope_before.low for _, found in known]
     why = []
     if not all(near):
@@ -673,7 +684,9 @@ def _force_is_capped(evidence: Evidence) -> Finding:
             + "; wheels lift in too few of these runs to show a cap by overturning"
         )
     verdict = IN_PART if any(capped) or any(slower) else NOT_BORNE_OUT
-    return Finding(claim, verdict, words + ".", ". ".join(t[0].upper() + t[1:] for t in why) + ".")
+    return Finding(
+        claim, verdict, _sentence([words]), ". ".join(t[0].upper() + t[1:] for t in why) + "."
+    )
 
 
 def _decoupled_force_scatters(evidence: Evidence) -> Finding:
@@ -687,18 +700,18 @@ def _decoupled_force_scatters(evidence: Evidence) -> Finding:
     if not known:
         return Finding(claim, NOT_TESTED, "There are too few decoupled runs.")
     words = "; ".join(
-        f"{name}: scatter of ln force {interval(one.scatter)} coupled, {interval(other.scatter)} "
-        f"decoupled; exponent beyond the knee {interval(one.slope_beyond)} and "
+        f"{PIERS[name]}: scatter of ln force {interval(one.scatter)} coupled, "
+        f"{interval(other.scatter)} decoupled; exponent beyond the knee {interval(one.slope_beyond)} and "
         f"{interval(other.slope_beyond)}"
         for one, other, name in known
     )
     more = [other.scatter.low > one.scatter.high for one, other, _ in known]
     larger = [other.scatter.value > one.scatter.value for one, other, _ in known]
     if all(more):
-        return Finding(claim, BORNE_OUT, words + ".")
+        return Finding(claim, BORNE_OUT, _sentence([words]))
     verdict = IN_PART if all(larger) else NOT_BORNE_OUT
     return Finding(
-        claim, verdict, words + ".",
+        claim, verdict, _sentence([words]),
         "The low-passed force scatters no more: the impacts by which the two models differ are "
         "filtered out of it.",
     )  # fmt: skip

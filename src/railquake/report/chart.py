@@ -99,6 +99,12 @@ class Panel:
         In the units of the axes, also where they are logarithmic.
     square : bool
         Whether both axes have the same range (for one quantity against itself).
+    y_ticks : tuple of (float, str)
+        Names instead of numbers along y.
+
+    Notes
+    -----
+    A title may have a second line, after a line feed.
     """
 
     title: str
@@ -110,6 +116,7 @@ class Panel:
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
     square: bool = False
+    y_ticks: tuple[tuple[float, str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""What all sections of a report share: the study's table, its statistics, and words for its runs."""
+"""What all sections of a report share: the table, its statistics, and words for its runs."""
 
 from __future__ import annotations
 

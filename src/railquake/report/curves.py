@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from railquake.errors import InputError
-from railquake.fragility import MEASURES, OUTCOMES, Fragility, compare_measures, outcome
+from railquake.fragility import (
+    LARGEST_BETA,
+    MEASURES,
+    OUTCOMES,
+    Fragility,
+    compare_measures,
+    outcome,
+)
 from railquake.report.chart import Band, Chart, Layer, Line, Panel, Points
 from railquake.report.context import Context, Section, Table, Text
 
@@ -19,6 +25,7 @@ NAMES = {"pbv": "PBV", "pba": "PBA", "pbd": "PBD", "pga": "PGA", "pgv": "PGV", "
 TITLES = {"onset": "Onset of slide-off reached", "derailed": "Derailed"}
 FEWEST_EVENTS = 1
 REPLICATES = 300
+FAR = 5.0  # times the largest measure of all runs
 
 
 def curves_of(context: Context) -> dict[tuple[str, str], Fragility]:
@@ -45,11 +52,16 @@ def section(context: Context) -> Section:
     blocks: list[Any] = []
     panels = []
     for event in OUTCOMES:
-        layers: list[Layer] = []
-        for model in context.models:
-            curve = curves.get((model, event))
-            if curve is not None and curve.measure == "pbv":
-                layers += _layers(context, model, curve)
+        drawn = [
+            (model, curves[model, event])
+            for model in context.models
+            if (model, event) in curves and curves[model, event].measure == "pbv"
+        ]
+        # bands lie below all lines, and those of decoupled models are left out
+        main = [(m, c) for m, c in drawn if not m.startswith("decoupled")] or drawn
+        layers: list[Layer] = [_band(context, model, curve) for model, curve in main]
+        layers += [_line(context, model, curve) for model, curve in drawn]
+        layers += [_outcomes(context, model, curve) for model, curve in main]
         if layers:
             panels.append(
                 Panel(TITLES[event], "PBV: peak velocity of the bridge, m/s", "probability",
@@ -58,9 +70,9 @@ def section(context: Context) -> Section:
     if panels:
         caption = (
             "Probability of the outcome given the bridge’s peak velocity: lognormal curves by "
-            "maximum likelihood, with 95 % bands of a bootstrap that draws records. Each run is a "
-            "point at 0 or 1. Where events are few the band is wide and the curve’s upper part "
-            "lies beyond the runs; do not read it there."
+            "maximum likelihood; dashed where the model is decoupled. Bands hold 95 % of a "
+            "bootstrap that draws records. Each coupled run is a point at 0 or 1. Where events are "
+            "few the band is wide and the curve’s upper part lies beyond the runs; do not read it there."
         )
         blocks.append(Chart("fragility", "Fragility against PBV", caption, tuple(panels)))
     if curves:
@@ -80,30 +92,38 @@ def section(context: Context) -> Section:
     if curves:
         blocks.append(
             Text(
-                "figures/fragility-pelicun.csv holds these curves in the layout of pelicun’s damage "
-                "model parameters.",
+                "figures/fragility-pelicun.csv holds these curves in the layout of pelicun’s "
+                "damage model parameters.",
                 "note",
             )
         )
     return Section("fragility", TITLE, tuple(blocks))
 
 
-def _layers(context: Context, model: str, curve: Fragility) -> list[Layer]:
-    look = context.look(model)
-    rows = context.of(model)
-    x = rows["pbv_m_s"].to_numpy(dtype=float)
-    kept = x > 0.0
-    happened = outcome(rows, curve.event)
-    at = np.linspace(0.0, 1.1 * curve.span[1], 80)
-    low, high = curve.band(at)
+def _grid(curve: Fragility) -> np.ndarray:
+    return np.linspace(0.0, 1.1 * curve.span[1], 80)
+
+
+def _band(context: Context, model: str, curve: Fragility) -> Layer:
+    look, at = context.look(model), _grid(curve)
+    return Band(f"95 % band, {look.label}", look.colour, at, *curve.band(at))
+
+
+def _line(context: Context, model: str, curve: Fragility) -> Layer:
+    look, at = context.look(model), _grid(curve)
     dash = "dashed" if look.open else "solid"
-    return [
-        Band(f"95 % band, {look.label}", look.colour, at, low, high),
-        Line(f"curve, {look.label}", look.colour, at, curve.probability(at), dash=dash, width=2.2,
-             in_legend=False),
-        Points(look.label, look.colour, x[kept], np.where(happened[kept], 1.0, 0.0),
-               rows["row"].to_numpy()[kept], context.words(rows[kept]), look.symbol, look.open, 4.0),
-    ]  # fmt: skip
+    return Line(look.label, look.colour, at, curve.probability(at), dash=dash, width=2.2)
+
+
+def _outcomes(context: Context, model: str, curve: Fragility) -> Layer:
+    look, rows = context.look(model), context.of(model)
+    kept = rows["pbv_m_s"].to_numpy(dtype=float) > 0.0
+    rows = rows[kept]
+    return Points(
+        f"runs, {look.label}", look.colour, rows["pbv_m_s"].to_numpy(dtype=float),
+        outcome(rows, curve.event).astype(float), rows["row"].to_numpy(), context.words(rows),
+        look.symbol, look.open, 4.5,
+    )  # fmt: skip
 
 
 def _table(context: Context, curves: dict[tuple[str, str], Fragility]) -> Table:
@@ -119,14 +139,14 @@ def _table(context: Context, curves: dict[tuple[str, str], Fragility]) -> Table:
                 NAMES[curve.measure],
                 f"{_number(curve.theta)} ({_ends(curve.theta_interval, curve)}) "
                 f"{MEASURES[curve.measure].unit}",
-                f"{_number(curve.beta)} ({_ends(curve.beta_interval, curve)})",
+                f"{_number(curve.beta)} ({_betas(curve)})",
                 "; ".join(curve.flags) or "–",
                 ranking or "–",
             )
         )
     caption = (
-        "Median θ and dispersion β with 95 % intervals (profile of the penalised likelihood, widened "
-        "for runs of the same record), flags, and ΔAIC of each measure on the same runs: the "
+        "Median θ and dispersion β with 95 % intervals (profile of the penalised likelihood, "
+        "widened for runs of the same record), flags, and ΔAIC of each measure on the same runs: the "
         "measure with 0 describes the outcome best, and 10 more is far worse."
     )
     head = ("model", "outcome", "events", "against", "θ", "β", "flags", "ΔAIC")
@@ -139,5 +159,10 @@ def _number(value: float) -> str:
 
 def _ends(ends: tuple[float, float], curve: Fragility) -> str:
     low, high = ends
-    last = f"{high:.3g}" if math.isfinite(high) and high < 20.0 * curve.span[1] else "unbounded"
+    last = f"{high:.3g}" if high < FAR * curve.span[1] else "far beyond the runs"
     return f"{low:.3g} to {last}"
+
+
+def _betas(curve: Fragility) -> str:
+    low, high = curve.beta_interval
+    return f"{low:.2g} to " + (f"{high:.2g}" if high < 0.999 * LARGEST_BETA else "unbounded")

@@ -24,7 +24,7 @@ MOST_POINTS = 2500  # of a loop in the page
 
 
 def section(context: Context) -> Section:
-    """Loops of the run with the largest rotation, of the median, and of the one that gained most."""
+    """Loops of the largest rotation, of medians, and of the run whose uplift gained most."""
     chosen = _telling(context)
     panels = []
     for row, what in chosen:
@@ -111,7 +111,7 @@ def _loop(context: Context, row: int, what: str) -> Panel:
     (words,) = context.words(context.table[context.table["row"] == row])
     peak = int(np.argmax(np.abs(rotation)))
     return Panel(
-        f"{what}: {words}"[:90],
+        f"{what}\n{words}",
         "hinge rotation, mrad",
         "moment, MN m",
         (

@@ -42,7 +42,7 @@ def _figure(panel: Panel, share: int) -> dict[str, Any]:
                 notes.append(_rule_text(layer, panel, x_range, y_range))
     layout = {
         "font": {**FONT, "color": FAINT},
-        "margin": {"l": 62, "r": 14, "t": 34, "b": 50},
+        "margin": {"l": 62, "r": 14, "t": 52 if "\n" in panel.title else 34, "b": 50},
         "height": 380,
         "paper_bgcolor": "white",
         "plot_bgcolor": "white",
@@ -50,15 +50,31 @@ def _figure(panel: Panel, share: int) -> dict[str, Any]:
         "hovermode": "closest",
         "hoverlabel": {"align": "left", "bgcolor": "white", "font": {**FONT, "color": INK}},
         "title": {
-            "text": _text(panel.title), "x": 0.0, "xref": "paper", "xanchor": "left", "y": 0.985,
-            "yanchor": "top", "font": {"size": 13, "color": INK},
+            "text": _title(panel.title), "x": 0.0, "xref": "paper", "xanchor": "left", "y": 1.0,
+            "yref": "paper", "yanchor": "bottom", "pad": {"b": 8},
+            "font": {"size": 13, "color": INK},
         },
         "xaxis": _axis(panel.x_label, panel.log_x, x_range),
-        "yaxis": _axis(panel.y_label, panel.log_y, y_range),
+        "yaxis": _axis(panel.y_label, panel.log_y, y_range) | _names(panel),
         "shapes": shapes,
         "annotations": notes,
     }  # fmt: skip
     return {"data": data, "layout": layout}
+
+
+def _names(panel: Panel) -> dict[str, Any]:
+    if not panel.y_ticks:
+        return {}
+    return {
+        "tickvals": [value for value, _ in panel.y_ticks],
+        "ticktext": [_text(name) for _, name in panel.y_ticks],
+    }
+
+
+def _title(text: str) -> str:
+    first, _, second = text.partition("\n")
+    small = f'<br><span style="font-size:11px">{_text(second)}</span>' if second else ""
+    return _text(first) + small
 
 
 def _axis(label: str, log: bool, span: tuple[float, float]) -> dict[str, Any]:
@@ -73,15 +89,14 @@ def _axis(label: str, log: bool, span: tuple[float, float]) -> dict[str, Any]:
         "ticklen": 4,
         "tickcolor": "#7f7f7f",
         "automargin": True,
+        "tickfont": {"size": 11},
     }
     if log:
         axis["type"] = "log"
         decades = high - low
         axis["dtick"] = 1 if decades > 2.2 else "D2" if decades > 0.9 else "D1"
         axis["minor"] = {"showgrid": False, "ticks": "outside", "ticklen": 2, "dtick": "D1"}
-        axis["exponentformat"] = "power"
-        axis["tickformat"] = "~r" if decades <= 2.2 else None
-        axis = {key: value for key, value in axis.items() if value is not None}
+        axis["tickformat"] = "~g"
     return axis
 
 
@@ -96,12 +111,16 @@ def _points(layer: Points, panel: Panel, share: int) -> dict[str, Any]:
         marker["symbol"] = f"{layer.symbol}-open"
         marker["line"] = {"width": 1.2, "color": layer.colour}
     template = (
-        "<b>%{text}</b><br>x %{x:.4~g}, y %{y:.4~g}"
-        "<br>%{meta[0]} %{customdata} %{meta[1]}<extra></extra>"
+        "<b>%{text}</b><extra></extra>"
+        if max(rows, default=-1) < 0
+        else (
+            "<b>%{text}</b><br>x %{x:.4~g}, y %{y:.4~g}"
+            "<br>%{meta[0]} %{customdata} %{meta[1]}<extra></extra>"
+        )
     )
     return {
-        "type": "scatter", "mode": "markers", "name": _text(layer.label), "x": _numbers(layer.x[at]),
-        "y": _numbers(layer.y[at]), "customdata": rows,
+        "type": "scatter", "mode": "markers", "name": _text(layer.label),
+        "x": _numbers(layer.x[at]), "y": _numbers(layer.y[at]), "customdata": rows,
         "text": [_text(text) for text in layer.texts[at]], "marker": marker,
         "hovertemplate": template,
     }  # fmt: skip
@@ -171,10 +190,9 @@ def _rule_text(
             "yanchor": "bottom",
         }  # fmt: skip
     assert layer.x is not None
-    return note | {
-        "yref": "paper", "y": 0.99, "x": at(layer.x, panel.log_x), "xanchor": "left",
-        "yanchor": "top",
-    }  # fmt: skip
+    low, here, high = (at(value, panel.log_x) for value in (x_range[0], layer.x, x_range[1]))
+    side = "right" if here > low + 0.6 * (high - low) else "left"
+    return note | {"yref": "paper", "y": 0.99, "x": here, "xanchor": side, "yanchor": "top"}
 
 
 def _numbers(values: Any) -> list[float | None]:

@@ -54,18 +54,18 @@ def section(context: Context) -> Section:
         return Section("lateral", TITLE, (Text("No run has a lateral force to show.", "note"),))
     span = (min(every) / 1.15, max(every) * 1.15)
     drawn_panels = tuple(
-        Panel(title, "PBA: peak acceleration of the track, m/s²", "peak lateral force / (μ × weight)",
-              (Rule("friction × weight", y=1.0), *layers), log_x=True, log_y=True, y_range=span)
+        Panel(title, "PBA: peak acceleration of the track, m/s²",
+              "peak lateral force / (μ × weight)", (Rule("friction × weight", y=1.0), *layers), log_x=True, log_y=True, y_range=span)
         for title, layers in panels
     )  # fmt: skip
     corner = context.first_scenario.solver.lateral_force_filter if context.first_scenario else 20.0
     caption = (
         "Largest lateral force of all wheels on the track, over friction times the train’s weight. "
-        f"Short impacts are left out by a low-pass at {corner:g} Hz. Lines are two joined power laws "
-        "fitted to each model’s runs: a cap would be a level second piece."
+        f"Short impacts are left out by a low-pass at {corner:g} Hz. Lines are two joined power "
+        "laws fitted to each model’s runs: a cap would be a level second piece."
     )
     chart = Chart(
-        "figure-10-lateral-force", "Lateral force, impacts filtered", caption, drawn_panels
+        "figure-10-lateral-force", "Lateral force, impacts filtered", caption, drawn_panels, 3
     )
     return Section("lateral", TITLE, (chart,))
 

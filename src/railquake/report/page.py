@@ -129,6 +129,7 @@ def _table(table: Table) -> str:
 
 def _chart(chart: Chart) -> str:
     panels = '<div class="panel"></div>' * len(chart.panels)
+    narrow = " three" if chart.columns == 3 else ""
     caption = chart.caption
     if chart.points > MOST_POINTS:
         caption += (
@@ -139,7 +140,8 @@ def _chart(chart: Chart) -> str:
         f'<a href="figures/{chart.name}.csv">CSV</a>)</span>'
     )
     return (
-        f'<figure id="{chart.name}">\n{_legend(chart)}\n<div class="panels">{panels}</div>\n'
+        f'<figure id="{chart.name}">\n{_legend(chart)}\n'
+        f'<div class="panels{narrow}">{panels}</div>\n'
         f"<figcaption><b>{_escape(chart.title)}.</b> {_escape(caption)} {files}</figcaption>\n"
         "</figure>"
     )
@@ -155,11 +157,16 @@ def _legend(chart: Chart) -> str:
             elif isinstance(layer, Line) and layer.in_legend:
                 entries.setdefault(layer.label, (STROKES[layer.dash], layer.colour))
     buttons = "".join(
-        f'<button type="button" aria-pressed="true" data-name="{_escape(html.escape(label, quote=False))}">'
+        f'<button type="button" aria-pressed="true" data-name="{_escape(_plotly_name(label))}">'
         f'<span style="color:{colour}">{glyph}</span>{_escape(label)}</button>'
         for label, (glyph, colour) in entries.items()
     )
     return f'<div class="legend">{buttons}</div>'
+
+
+def _plotly_name(label: str) -> str:
+    """As `interactive` writes it."""
+    return html.escape(label, quote=False)
 
 
 def _answers(block: Answers) -> str:

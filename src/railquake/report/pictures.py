@@ -78,9 +78,12 @@ def _draw(ax: Axes, panel: Panel, handles: dict[str, Any]) -> None:
         if drawn is not None and not isinstance(layer, Rule | Band):
             handles.setdefault(layer.label, drawn)
     _plain_decades(ax, panel)
+    if panel.y_ticks:
+        ax.set_yticks([value for value, _ in panel.y_ticks], [plain(n) for _, n in panel.y_ticks])
     ax.set_xlabel(plain(panel.x_label), fontsize=9)
     ax.set_ylabel(plain(panel.y_label), fontsize=9)
-    ax.set_title(plain(panel.title), fontsize=9, loc="left", pad=5.0)
+    title = "\n".join(plain(line) for line in panel.title.split("\n"))
+    ax.set_title(title, fontsize=9, loc="left", pad=5.0)
 
 
 def _plain_decades(ax: Axes, panel: Panel) -> None:
@@ -97,7 +100,7 @@ def _plain_decades(ax: Axes, panel: Panel) -> None:
         if decades <= 2.2:
             digits = (1.0, 2.0, 5.0) if decades > 0.9 else tuple(float(k) for k in range(1, 10))
             axis.set_major_locator(LogLocator(subs=digits))
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_locator(LogLocator(subs=tuple(float(k) for k in range(1, 10))))
         axis.set_minor_formatter(NullFormatter())
 
@@ -139,7 +142,19 @@ def _rule(ax: Axes, layer: Rule, panel: Panel) -> None:
         ax.text(0.01, layer.y, label, va="bottom", transform=ax.get_yaxis_transform(), **text)
     elif layer.x is not None:
         ax.axvline(layer.x, **style)
-        ax.text(layer.x, 0.99, f" {label}", va="top", transform=ax.get_xaxis_transform(), **text)
+        far = ax.transAxes.inverted().transform(
+            ax.transData.transform((layer.x, ax.get_ylim()[1]))
+        )[0]
+        side = "right" if far > 0.6 else "left"
+        ax.text(
+            layer.x,
+            0.99,
+            f" {label} ",
+            va="top",
+            ha=side,
+            transform=ax.get_xaxis_transform(),
+            **text,
+        )
 
 
 def csv_text(chart: Chart) -> str:

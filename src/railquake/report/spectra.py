@@ -81,20 +81,20 @@ def section(context: Context, hazard: str | None = None) -> Section:
             replace(panel, layers=(*panel.layers, Rule("T₁ of the pier", x=t1))) for panel in panels
         ]
     caption = (
-        f"Response spectra of the {len(suite.members)} motions of the suite “{suite.name}” at each "
-        "level (grey), their geometric mean with one standard deviation (blue)"
+        f"Response spectra of the {len(suite.members)} motions of the suite “{suite.name}” at "
+        "each level (grey), their geometric mean with one standard deviation (blue)"
     )
     if known is not None:
-        caption += f", and the uniform hazard spectrum of that level (red, dashed): {known.source}"
-        if known.note:
-            caption += f" {known.note}"
+        caption += f", and the uniform hazard spectrum “{known.name}” of that level (red, dashed)"
     else:
         caption += ". No target is known for this suite; name one with --hazard"
     caption = caption.rstrip(".") + "."
-    return Section(
-        "spectra", TITLE,
-        (Chart("suite-spectra", "Spectra of the suite against the hazard", caption, tuple(panels)),),
-    )  # fmt: skip
+    title = "Spectra of the suite against the hazard"
+    chart = Chart("suite-spectra", title, caption, tuple(panels))
+    if known is None:
+        return Section("spectra", TITLE, (chart,))
+    source = Text(f"The target’s source: {known.source}. {known.note}", "note")
+    return Section("spectra", TITLE, (chart, source))
 
 
 def _probability(level: str) -> float | None:

@@ -9,8 +9,8 @@ import numpy as np
 
 from railquake.findings import correlate
 from railquake.findings.questions import interval
-from railquake.report.chart import Chart, Line, Panel, Rule
-from railquake.report.context import REPLICATES, Section, Table, Text
+from railquake.report.chart import Chart, Layer, Line, Panel, Points, Rule
+from railquake.report.context import REPLICATES, Section, Text
 from railquake.report.layers import runs
 
 if TYPE_CHECKING:
@@ -35,8 +35,10 @@ def section(context: Context) -> Section:
     level = Rule("onset of slide-off", y=1.0)
     panels = []
     for layers, measure, label, title in (
-        (velocity, "pbv_m_s", "PBV: peak velocity of the bridge, m/s", "Against the bridge’s peak velocity"),
-        (acceleration, "pba_m_s2", "PBA: peak acceleration of the track, m/s²", "Against its peak acceleration"),
+        (velocity, "pbv_m_s", "PBV: peak velocity of the bridge, m/s",
+         "Against the bridge’s peak velocity"),
+        (acceleration, "pba_m_s2", "PBA: peak acceleration of the track, m/s²",
+         "Against its peak acceleration"),
     ):  # fmt: skip
         if layers:
             fits = _fits(context, models, measure)
@@ -52,8 +54,8 @@ def section(context: Context) -> Section:
             )
     caption = (
         "Peak roll of the wheelset against the track, over the roll at which slide-off begins, for "
-        "every run; lines are power laws fitted to all runs of a model. The closer the points lie to "
-        "their line, the better the measure. "
+        "every run; lines are power laws fitted to all runs of a model. The closer the points lie "
+        "to their line, the better the measure. "
         + (
             "At grade there is no bridge velocity, and PBA is the ground’s. "
             if "at-grade" in models
@@ -63,9 +65,9 @@ def section(context: Context) -> Section:
     )
     chart = Chart("figure-7-uplift", "Uplift against PBV and PBA", caption, tuple(panels))
     blocks: list[object] = [chart]
-    table = _correlations(context, models)
-    if table is not None:
-        blocks.append(table)
+    forest = _correlations(context, models)
+    if forest is not None:
+        blocks.append(forest)
     return Section("uplift", TITLE, tuple(blocks))
 
 
@@ -87,32 +89,58 @@ def _fits(context: Context, models: list[str], measure: str) -> tuple[Line, ...]
     return tuple(lines)
 
 
-def _correlations(context: Context, models: list[str]) -> Table | None:
-    rows = []
-    for model in models[:6]:
-        found = context.evidence.correlations.get(model) or correlate(
-            context.of(model), replicates=REPLICATES
-        )
-        within = context.evidence.within_level.get(model)
-        for item in found.items:
-            inside = within.of(item.measure) if within is not None else None
-            rows.append(
-                (
-                    context.look(model).label,
-                    NAMES.get(item.measure, item.measure),
-                    interval(item.spearman),
-                    interval(inside.spearman) if inside is not None else "–",
-                    interval(item.dispersion),
-                    interval(item.exponent),
-                    str(found.runs),
-                )
-            )
-    if not rows:
+def _correlations(context: Context, models: list[str]) -> Chart | None:
+    """How well uplift goes with each measure: values and intervals, one above another."""
+    shown = models[:6]
+    found = {
+        model: context.evidence.correlations.get(model)
+        or correlate(context.of(model), replicates=REPLICATES)
+        for model in shown
+    }
+    names = [name for name in NAMES if any(item.of(name) for item in found.values())]
+    if not names:
         return None
+    places = {name: float(len(names) - k) for k, name in enumerate(names)}
+    ticks = tuple((place, NAMES[name]) for name, place in places.items())
+    panels = []
+    for title, label, source, quantity in (
+        ("Rank correlation over all runs", "Spearman’s ρ (1: perfect)", found, "spearman"),
+        ("Rank correlation within a level", "Spearman’s ρ, the levels’ means taken away",
+         context.evidence.within_level, "spearman"),
+        ("Scatter about a power law", "β, standard deviation of ln uplift (0: perfect)", found,
+         "dispersion"),
+    ):  # fmt: skip
+        layers: list[Layer] = []
+        for k, model in enumerate(shown):
+            known = source.get(model)
+            if known is None:
+                continue
+            look = context.look(model)
+            shift = 0.16 * (0.5 * (len(shown) - 1) - k)
+            items = [item for item in known.items if item.measure in places]
+            values = [getattr(item, quantity) for item in items]
+            y = np.array([places[item.measure] + shift for item in items])
+            gap = math.nan
+            ends = [end for value in values for end in (value.low, value.high, gap)]
+            layers.append(
+                Line(f"intervals, {look.label}", look.colour, np.array(ends),
+                     np.repeat(y, 3), width=1.6, in_legend=False)
+            )  # fmt: skip
+            said = [f"{NAMES[i.measure]}, {look.label}: {interval(v)}"
+                    for i, v in zip(items, values, strict=True)]  # fmt: skip
+            layers.append(
+                Points(look.label, look.colour, np.array([v.value for v in values]), y,
+                       np.full(len(y), -1), said, look.symbol, look.open, 7.0)
+            )  # fmt: skip
+        if layers:
+            panels.append(
+                Panel(title, label, "", tuple(layers), y_range=(0.4, len(names) + 0.6),
+                      y_ticks=ticks)
+            )  # fmt: skip
     caption = (
-        "How uplift goes with each measure: Spearman’s rank correlation over all runs and within a "
-        "level (each level’s mean taken away first), the standard deviation β of ln uplift about the "
-        "power law, and its exponent; 95 % intervals, records drawn."
+        "How well uplift goes with each measure, with 95 % intervals of a bootstrap that draws "
+        "records. Over all runs every measure grows with the level and looks good; within a level "
+        "only what tells one record from another counts. Where intervals overlap widely, these "
+        "records cannot tell the measures apart."
     )
-    head = ("model", "measure", "ρ", "ρ within a level", "scatter β", "exponent", "runs")
-    return Table(head, tuple(rows), caption)
+    return Chart("measures", "Which measure goes with uplift", caption, tuple(panels), columns=3)

@@ -37,7 +37,7 @@ def section(context: Context) -> Section:
     for k, (label, frequency) in enumerate(zip(labels, frequencies, strict=True), 1):
         beside = PAPER.get(label, ("–", "–", "–")) if ours else ()
         rows.append((str(k), label, f"{frequency:.3f}", *beside))
-    head = ("mode", "shape", "railquake, Hz")
+    head: tuple[str, ...] = ("mode", "shape", "railquake, Hz")
     if ours:
         head = (*head, "paper, Hz", "BART reference, Hz", "FEM, Hz")
     varied = [a.column for a in context.results.study.axes if a.column.startswith("vehicle.")

@@ -115,8 +115,12 @@ def _subtitle(context: Context) -> str:
     study = context.results.study
     suite = getattr(study.suite, "name", None)
     axes = ", ".join(axis.column for axis in study.axes)
-    parts = [f"suite {suite}" if suite else "", f"levels {', '.join(study.levels)}" if study.levels else "",
-             f"axes {axes}" if axes else ""]  # fmt: skip
+    levels = ", ".join(study.levels)
+    parts = [
+        f"suite {suite}" if suite else "",
+        f"levels {levels}" if levels else "",
+        f"axes {axes}" if axes else "",
+    ]
     said = "; ".join(part for part in parts if part)
     return f"{said}. Point at a run for the command that reruns it, click to copy it."
 
@@ -125,9 +129,9 @@ def _footer() -> str:
     from railquake import __version__
 
     return (
-        f"Made by railquake {__version__} on {datetime.now(UTC):%Y-%m-%d}. The model is that of Gomez "
-        "and DeJong (2023), “Analytical parametric investigation of nonlinear train-structure "
-        "interaction under earthquake excitation”; what it cannot tell is in the documentation "
+        f"Made by railquake {__version__} on {datetime.now(UTC):%Y-%m-%d}. The model is that of "
+        "Gomez and DeJong (2023), “Analytical parametric investigation of nonlinear "
+        "train-structure interaction under earthquake excitation”; what it cannot tell is in the documentation "
         "under limits."
     )
 
