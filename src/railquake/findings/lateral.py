@@ -20,6 +20,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 FEWEST_RUNS = 12
 FEWEST_BEYOND = 5  # runs on either side of the knee
 KNEES = 25  # tried along the measure
+SLOWER = 0.8
 ANY_LEVEL = 0.25  # of the slope before the knee: flatter than that it has levelled off
 
 
@@ -82,6 +83,14 @@ class LevelOff:
         return (
             self.slope_beyond.known
             and self.slope_beyond.value < ANY_LEVEL * self.slope_before.value
+        )
+
+    @property
+    def slows(self) -> bool:
+        """Whether it grows clearly more slowly beyond: by a fifth, and the intervals are apart."""
+        return (
+            self.slope_beyond.value < SLOWER * self.slope_before.value
+            and self.slope_beyond.high < self.slope_before.low
         )
 
 

@@ -389,7 +389,7 @@ def _overturning(evidence: Evidence) -> Answer:
     runs = sum(evidence.outcomes[name].runs for name, _, _ in known)
     parts.append(f"A wheel lifts off its rail in {lifted} of these {runs} runs.")
     capped = [found.levels_off for _, _, found in known]
-    slower = [found.slope_beyond.high < found.slope_before.low for _, _, found in known]
+    slower = [found.slows for _, _, found in known]
     if all(capped):
         short = "Yes: the force levels off"
     elif any(capped):
@@ -669,7 +669,7 @@ def _force_is_capped(evidence: Evidence) -> Finding:
     near = [found.level.value <= 1.3 for _, found in known]
     if all(capped) and all(near):
         return Finding(claim, BORNE_OUT, _sentence([words]))
-    slower = [found.slope_beyond.high < found.slope_before.low for _, found in known]
+    slower = [found.slows for _, found in known]
     why = []
     if not all(near):
         why.append(
@@ -701,8 +701,8 @@ def _decoupled_force_scatters(evidence: Evidence) -> Finding:
         return Finding(claim, NOT_TESTED, "There are too few decoupled runs.")
     words = "; ".join(
         f"{PIERS[name]}: scatter of ln force {interval(one.scatter)} coupled, "
-        f"{interval(other.scatter)} decoupled; exponent beyond the knee {interval(one.slope_beyond)} and "
-        f"{interval(other.slope_beyond)}"
+        f"{interval(other.scatter)} decoupled; exponent beyond the knee "
+        f"{interval(one.slope_beyond)} and {interval(other.slope_beyond)}"
         for one, other, name in known
     )
     more = [other.scatter.low > one.scatter.high for one, other, _ in known]

@@ -72,7 +72,8 @@ def section(context: Context) -> Section:
             "Probability of the outcome given the bridge’s peak velocity: lognormal curves by "
             "maximum likelihood; dashed where the model is decoupled. Bands hold 95 % of a "
             "bootstrap that draws records. Each coupled run is a point at 0 or 1. Where events are "
-            "few the band is wide and the curve’s upper part lies beyond the runs; do not read it there."
+            "few the band is wide and the curve’s upper part lies beyond the runs; do not read it "
+            "there."
         )
         blocks.append(Chart("fragility", "Fragility against PBV", caption, tuple(panels)))
     if curves:
@@ -146,7 +147,8 @@ def _table(context: Context, curves: dict[tuple[str, str], Fragility]) -> Table:
         )
     caption = (
         "Median θ and dispersion β with 95 % intervals (profile of the penalised likelihood, "
-        "widened for runs of the same record), flags, and ΔAIC of each measure on the same runs: the "
+        "widened for runs of the same record), flags, and ΔAIC of each measure on the same "
+        "runs: the "
         "measure with 0 describes the outcome best, and 10 more is far worse."
     )
     head = ("model", "outcome", "events", "against", "θ", "β", "flags", "ΔAIC")

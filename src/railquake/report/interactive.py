@@ -42,7 +42,7 @@ def _figure(panel: Panel, share: int) -> dict[str, Any]:
                 notes.append(_rule_text(layer, panel, x_range, y_range))
     layout = {
         "font": {**FONT, "color": FAINT},
-        "margin": {"l": 62, "r": 14, "t": 52 if "\n" in panel.title else 34, "b": 50},
+        "margin": {"l": 62, "r": 14, "t": 56 if "\n" in panel.title else 34, "b": 50},
         "height": 380,
         "paper_bgcolor": "white",
         "plot_bgcolor": "white",
@@ -51,7 +51,7 @@ def _figure(panel: Panel, share: int) -> dict[str, Any]:
         "hoverlabel": {"align": "left", "bgcolor": "white", "font": {**FONT, "color": INK}},
         "title": {
             "text": _title(panel.title), "x": 0.0, "xref": "paper", "xanchor": "left", "y": 1.0,
-            "yref": "paper", "yanchor": "bottom", "pad": {"b": 8},
+            "yref": "paper", "yanchor": "bottom", "pad": {"b": 24 if "\n" in panel.title else 8},
             "font": {"size": 13, "color": INK},
         },
         "xaxis": _axis(panel.x_label, panel.log_x, x_range),

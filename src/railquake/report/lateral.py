@@ -55,7 +55,8 @@ def section(context: Context) -> Section:
     span = (min(every) / 1.15, max(every) * 1.15)
     drawn_panels = tuple(
         Panel(title, "PBA: peak acceleration of the track, m/s²",
-              "peak lateral force / (μ × weight)", (Rule("friction × weight", y=1.0), *layers), log_x=True, log_y=True, y_range=span)
+              "peak lateral force / (μ × weight)", (Rule("friction × weight", y=1.0), *layers),
+              log_x=True, log_y=True, y_range=span)
         for title, layers in panels
     )  # fmt: skip
     corner = context.first_scenario.solver.lateral_force_filter if context.first_scenario else 20.0

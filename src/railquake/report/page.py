@@ -63,7 +63,8 @@ def page_html(
         ],
     }
     contents = "\n".join(
-        f'<li><a href="#{section.key}">{_escape(section.title)}</a></li>' for section in sections
+        f'<li><a href="#{section.key}">{_escape(_short(section.title))}</a></li>'
+        for section in sections
     )
     template = Template(_file("page.html"))
     return template.substitute(
@@ -83,8 +84,13 @@ def _file(name: str) -> str:
     return (resources.files(__package__) / "templates" / name).read_text(encoding="utf-8")
 
 
+def _short(title: str) -> str:
+    return title.split(":")[0].split(" (")[0]
+
+
 def _escape(text: str) -> str:
-    return html.escape(text, quote=True)
+    """Text for HTML; a number and its per cent sign stay together."""
+    return html.escape(text, quote=True).replace(" %", "&nbsp;%")
 
 
 def _json(value: Any) -> str:

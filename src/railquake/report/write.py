@@ -122,7 +122,8 @@ def _subtitle(context: Context) -> str:
         f"axes {axes}" if axes else "",
     ]
     said = "; ".join(part for part in parts if part)
-    return f"{said}. Point at a run for the command that reruns it, click to copy it."
+    said = f"{said[0].upper()}{said[1:]}. " if said else ""
+    return f"{said}Point at a run for the command that reruns it, click to copy it."
 
 
 def _footer() -> str:
@@ -131,8 +132,8 @@ def _footer() -> str:
     return (
         f"Made by railquake {__version__} on {datetime.now(UTC):%Y-%m-%d}. The model is that of "
         "Gomez and DeJong (2023), “Analytical parametric investigation of nonlinear "
-        "train-structure interaction under earthquake excitation”; what it cannot tell is in the documentation "
-        "under limits."
+        "train-structure interaction under earthquake excitation”; what it cannot tell is in the "
+        "documentation under limits."
     )
 
 
