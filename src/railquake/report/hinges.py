@@ -60,7 +60,8 @@ def _telling(context: Context) -> list[tuple[int, str]]:
     gained = _gained_most(context, rows)
     if gained is not None:
         found.setdefault(gained, "uplift grew most over the elastic pier’s")
-    strongest = rows[rows["level"] == rows["level"].iloc[0]] if "level" in rows else rows
+    level = rows["level"].fillna("").astype(str)
+    strongest = rows[level == level.iloc[0]]
     found.setdefault(int(strongest["row"].iloc[len(strongest) // 2]), "median of its level")
     found.setdefault(int(rows["row"].iloc[len(rows) // 2]), "median of all")
     return list(found.items())[:4]

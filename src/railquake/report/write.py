@@ -12,6 +12,7 @@ from pathlib import Path
 
 from railquake.errors import InputError
 from railquake.fragility import OUTCOMES, write_csv
+from railquake.output import prepare_folder
 from railquake.report import (
     curves,
     decoupled,
@@ -77,6 +78,7 @@ def write_report(
     page = Path(out) if out is not None else Path(folder) / PAGE
     if page.is_dir():
         raise InputError(f"--out {page}: is a folder; name a file, such as {page / PAGE}")
+    prepare_folder(page.parent)
     if not len(context.results.table):
         raise InputError(f"{folder}: its table holds no rows; run the study first")
     if hazard is not None:

@@ -29,7 +29,8 @@ def finding(findings, start):
 
 @pytest.mark.parametrize(
     ("ratio", "short", "verdict"),
-    [(0.8, "Yes: as a rule it lowers", BORNE_OUT), (1.25, "Yes: as a rule it raises", NOT_BORNE_OUT),
+    [(0.8, "Yes: as a rule it lowers", BORNE_OUT),
+     (1.25, "Yes: as a rule it raises", NOT_BORNE_OUT),
      (1.0, "No clear influence", NOT_BORNE_OUT)],
 )  # fmt: skip
 def test_the_nonlinear_pier_s_influence_is_told_as_it_is(ratio, short, verdict):
