@@ -49,6 +49,7 @@ def table(seed=0, records=20, speeds=(0.0028, 22.2, 66.7), models=MODELS, ratios
     made["status"] = "safe"
     made["derailment_mode"] = None
     made["onset_first_s"] = np.nan
+    made["flange_contact_first_s"] = np.nan
     made["off_rail_time_s"] = 0.0
     made["wheel_load_static_n"] = 2.0e5
     return made

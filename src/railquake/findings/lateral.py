@@ -123,7 +123,8 @@ def level_off(
     Notes
     -----
     ``ln y = a + b1 min(u - k, 0) + b2 max(u - k, 0)``, u = ln x: least squares for each of 25 knees
-    k between the runs' 10 and 90 % quantiles, and the best of them.
+    k between the runs' 10 and 90 % quantiles, and the best of them.  What levels off grows more
+    slowly beyond: where a knee asks for b2 > b1, a single straight line stands in its place.
     """
     rows = table["status"].isin(("safe", "onset", "derailed")).to_numpy()
     x = table[measure].to_numpy(dtype=float)[rows]
@@ -156,6 +157,12 @@ def _two_lines(u: Array, v: Array) -> Array:
     design = np.stack([np.ones_like(below), below, above], axis=-1)
     normal = np.einsum("kni,knj->kij", design, design) + 1e-12 * np.eye(3)
     found = np.linalg.solve(normal, np.einsum("kni,n->ki", design, v)[..., None])[..., 0]
+    steeper = found[:, 2] > found[:, 1]
+    if steeper.any():
+        slope, offset = np.polyfit(u, v, 1)
+        found[steeper] = np.column_stack(
+            [offset + slope * knees, np.full(KNEES, slope), np.full(KNEES, slope)]
+        )[steeper]
     left = v - np.einsum("kni,ki->kn", design, found)
     squares = np.einsum("kn,kn->k", left, left)
     enough = ((above > 0.0).sum(axis=1) >= FEWEST_BEYOND) & (

@@ -54,13 +54,15 @@ class Outcomes:
 
     Attributes
     ----------
-    runs, lifted, onset, derailed : int
-        Finished runs; those in which a wheel left its rail; reached the onset; left the track.
+    runs, flange, lifted, onset, derailed : int
+        Finished runs; those in which a flange touched its rail; in which a wheel left its rail;
+        that reached the onset; that left the track.
     modes : mapping of str to int
         Derailments by mode, sides together.
     """
 
     runs: int
+    flange: int
     lifted: int
     onset: int
     derailed: int
@@ -184,6 +186,7 @@ def _outcomes(rows: pd.DataFrame) -> Outcomes:
     onset = done["status"].isin(("onset", "derailed")) | done["onset_first_s"].notna()
     return Outcomes(
         len(done),
+        int(done["flange_contact_first_s"].notna().sum()),
         int((done["off_rail_time_s"] > 0.0).sum()),
         int(onset.sum()),
         int((done["status"] == "derailed").sum()),
@@ -670,18 +673,19 @@ def _force_is_capped(evidence: Evidence) -> Finding:
     if all(capped) and all(near):
         return Finding(claim, BORNE_OUT, _sentence([words]))
     slower = [found.slows for _, found in known]
+    outcomes = [evidence.outcomes[name] for name, _ in known]
+    runs = sum(found.runs for found in outcomes)
     why = []
     if not all(near):
         why.append(
-            "Once a flange bears against its rail the force is no longer carried by friction "
-            "alone, and its contact angle lets it exceed friction × weight; so do vertical loads "
-            "above the static one"
+            f"A flange bears against its rail in {sum(found.flange for found in outcomes)} of "
+            f"these {runs} runs: its contact is steep, so that the force is not friction’s alone"
         )
     if not all(capped):
         why.append(
-            "the force still grows beyond the knee"
+            "The force still grows beyond the knee"
             + (", though more slowly" if any(slower) else "")
-            + "; wheels lift in too few of these runs to show a cap by overturning"
+            + f"; a wheel lifts in {sum(found.lifted for found in outcomes)} of {runs} runs"
         )
     verdict = IN_PART if any(capped) or any(slower) else NOT_BORNE_OUT
     return Finding(

@@ -58,7 +58,7 @@ def section(context: Context) -> Section:
                 for name in present
             )
             panels.append(
-                Panel(f"{title}\nratio: {said}", f"coupled: {label}", f"decoupled: {label}",
+                Panel(f"{title}\n{said}", f"coupled: {label}", f"decoupled: {label}",
                       (Rule("equal", diagonal=1.0), *layers), log_x=True, log_y=True, square=True)
             )  # fmt: skip
     caption = (

@@ -73,7 +73,7 @@ def _names(panel: Panel) -> dict[str, Any]:
 
 def _title(text: str) -> str:
     first, _, second = text.partition("\n")
-    small = f'<br><span style="font-size:11px">{_text(second)}</span>' if second else ""
+    small = f'<br><span style="font-size:10px">{_text(second)}</span>' if second else ""
     return _text(first) + small
 
 

@@ -126,10 +126,10 @@ def _table(table: Table) -> str:
         "<tr>" + "".join(f"<td>{_escape(cell)}</td>" for cell in row) + "</tr>"
         for row in table.rows
     )
-    caption = f"<caption>{_escape(table.caption)}</caption>" if table.caption else ""
+    caption = f'<p class="caption">{_escape(table.caption)}</p>' if table.caption else ""
     return (
-        f'<div class="scroll"><table>{caption}<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n'
-        "</tbody></table></div>"
+        f'<div class="scroll"><table><thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n'
+        f"</tbody></table></div>{caption}"
     )
 
 
