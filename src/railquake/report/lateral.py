@@ -10,7 +10,7 @@ import numpy as np
 from railquake.findings import force_ratio
 from railquake.findings.lateral import LevelOff
 from railquake.report.chart import Chart, Layer, Line, Panel, Rule
-from railquake.report.context import Section, Text
+from railquake.report.context import Look, Section, Text
 from railquake.report.layers import points
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def section(context: Context) -> Section:
     return Section("lateral", TITLE, (chart,))
 
 
-def _two_lines(fit: LevelOff, x: np.ndarray, y: np.ndarray, look: object) -> Line:
+def _two_lines(fit: LevelOff, x: np.ndarray, y: np.ndarray, look: Look) -> Line:
     """The two joined lines, through the data in the mean."""
     u = np.log(np.geomspace(x.min(), x.max(), 60))
     knee = math.log(fit.knee.value)
@@ -81,6 +81,5 @@ def _two_lines(fit: LevelOff, x: np.ndarray, y: np.ndarray, look: object) -> Lin
         return before + fit.slope_beyond.value * np.maximum(at - knee, 0.0)
 
     offset = float(np.mean(np.log(y) - rise(np.log(x))))
-    label, colour = look.label, look.colour  # type: ignore[attr-defined]
-    return Line(f"two power laws, {label}", colour, np.exp(u), np.exp(offset + rise(u)), width=1.6,
+    return Line(f"two power laws, {look.label}", look.colour, np.exp(u), np.exp(offset + rise(u)), width=1.6,
                 in_legend=False)  # fmt: skip
