@@ -2,16 +2,17 @@
 PYTHON ?= python3
 VENV   ?= .venv
 DEMO   ?= demo-out
+RECORDS ?= ../shared/records/paper_suite
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input
 SHELL  := /bin/bash
 
-.PHONY: help demo test lint format types layers docs bench constraints clean
+.PHONY: help demo test lint format types layers docs bench validate constraints clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
-	@echo "make demo | test | lint | format | types | layers | docs | bench | clean"
+	@echo "make demo | test | lint | format | types | layers | docs | bench | validate | clean"
 
 demo: $(VENV)/.ready-run
 	$(BIN)/railquake demo --out $(DEMO)
@@ -39,14 +40,21 @@ docs: $(VENV)/.ready-docs
 
 bench: $(VENV)/.ready-bench
 	$(BIN)/railquake bench
+	$(BIN)/python benchmarks/shortcuts.py $(RECORDS)
+	$(BIN)/python benchmarks/lockstep_memory.py
+
+# Every comparison, and the documentation's page of them; the reference data lie in ../shared.
+validate: $(VENV)/.ready-fem
+	$(BIN)/railquake validate --page docs/validation.md
 
 # One stamp per set of packages.  Each holds when the interpreter and both lists are older than it.
 $(VENV)/.ready-run:   EXTRAS :=
 $(VENV)/.ready-dev:   EXTRAS := [dev]
 $(VENV)/.ready-docs:  EXTRAS := [docs]
 $(VENV)/.ready-bench: EXTRAS := [bench]
-$(VENV)/.ready-run $(VENV)/.ready-dev $(VENV)/.ready-docs $(VENV)/.ready-bench: \
-		$(VENV)/.created pyproject.toml constraints.txt
+$(VENV)/.ready-fem:   EXTRAS := [fem]
+$(VENV)/.ready-run $(VENV)/.ready-dev $(VENV)/.ready-docs $(VENV)/.ready-bench \
+		$(VENV)/.ready-fem: $(VENV)/.created pyproject.toml constraints.txt
 	@echo "Installing railquake$(EXTRAS) into $(VENV) (a minute or so, once)"
 	@$(PIP) -c constraints.txt -e ".$(EXTRAS)"
 	@touch $@

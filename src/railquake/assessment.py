@@ -100,6 +100,7 @@ def assess(response: Response) -> dict[str, Any]:
         "wall_s": response.wall_s,
         "dt_s": response.system.dt,
         "dt_critical_s": response.system.critical_dt,
+        "dt_error": None if response.time_step is None else response.time_step.error,
         "contact": response.system.scenario.solver.contact,
         "versions": versions(),
     }

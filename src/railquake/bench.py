@@ -15,23 +15,21 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.assessment import versions
+from railquake.errors import InputError
+from railquake.fem.pier import time_opensees_pier
 from railquake.inputs.scenario import scenario
 from railquake.lockstep import simulate_many
-from railquake.physics.kernel import LOCKSTEP
+from railquake.physics.kernel import lockstep_target
 from railquake.simulation import simulate
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from railquake.inputs.scenario import Scenario
-    from railquake.inputs.support import Pier
 
-__all__ = ["opensees_pier", "print_bench", "run_bench"]
+__all__ = ["print_bench", "run_bench"]
 
 MOTION = {"seed": 18, "duration": "20 s", "pga": "1.0 g", "ground_frequency": "1.8 Hz"}
 OPENSEES_STEPS = 20_000
@@ -53,7 +51,7 @@ def _rate(case: Scenario, repeats: int) -> tuple[float, float]:
 
 def _lockstep_rate(threads: int, repeats: int, motion: dict[str, Any]) -> float:
     """Best steps per second of a batch, assembly included: four scenarios to a lane."""
-    count = 4 * LOCKSTEP.lanes * threads
+    count = 4 * lockstep_target().lanes * threads
     cases = [
         _case(motion={**motion, "seed": 18 + k}, scale=0.6 + 0.8 * k / count) for k in range(count)
     ]
@@ -66,109 +64,15 @@ def _lockstep_rate(threads: int, repeats: int, motion: dict[str, Any]) -> float:
     return max(rates)
 
 
-def opensees_pier(
-    pier: Pier,
-    acceleration: np.ndarray,
-    dt: float,
-    step: float,
-    steps: int,
-    *,
-    gravity: float = 1.0,
-    history: Callable[[float], None] | None = None,
-) -> float:
-    """Run the pier alone in OpenSees, with its own DegradingPinchedBW hinge.
-
-    Parameters
-    ----------
-    pier : Pier
-    acceleration : array
-        Ground acceleration at intervals of ``dt``, times ``gravity`` in m/s2.
-    dt, step : float
-        Interval of the record and time step, s.
-    steps : int
-    gravity : float
-    history : callable, optional
-        Called after each step with the top's displacement; without it all steps are one call.
-
-    Returns
-    -------
-    float
-        Wall time of the analysis, s.
-
-    Raises
-    ------
-    ImportError
-        Without the package ``opensees`` (extra ``railquake[bench]``).
-    """
-    import numpy as np
-    import opensees.openseespy as ops
-
-    from railquake.physics.pier import natural_frequencies, stiffness_matrix
-
-    ops.wipe()
-    ops.model("basic", "-ndm", 2, "-ndf", 3)
-    for tag, y in ((1, 0.0), (2, 0.0), (3, pier.length)):
-        ops.node(tag, 0.0, y)
-    ops.fix(1, 1, 1, 1)
-    ops.fix(2, 1, 1, 0)
-    ops.fix(3, 0, 1, 0)
-    ops.mass(2, 0.0, 0.0, pier.base_rotational_inertia)
-    ops.mass(3, pier.mass, 0.0, pier.rotational_inertia)
-    h = pier.bouc_wen
-    if pier.hinge == "elastic":
-        ops.uniaxialMaterial("Elastic", 1, h.k0)
-    else:
-        ops.uniaxialMaterial(
-            "DegradingPinchedBW", 1, h.m, h.Fy, h.xu, h.alpha, h.k0, h.n, h.eta0, h.beta0,
-            h.rho_eps, h.rho_x, h.phi, h.delta_k, h.delta_f, h.sigma, h.u, h.eps_p, h.rho_p,
-            1e-12, 1000,
-        )  # fmt: skip
-    ops.element("zeroLength", 1, 1, 2, "-mat", 1, "-dir", 6, "-doRayleigh", 1)
-    ops.geomTransf("Linear", 1)
-    # the area is no part of the model: the top is held vertically
-    ops.element(
-        "elasticBeamColumn", 2, 2, 3, 1.0, pier.youngs_modulus, pier.second_moment_of_area, 1
-    )
-    ops.timeSeries("Path", 1, "-dt", dt, "-values", *acceleration.tolist(), "-factor", gravity)
-    ops.pattern("UniformExcitation", 1, 1, "-accel", 1)
-    mass = np.array([pier.mass, pier.base_rotational_inertia, pier.rotational_inertia])
-    initial = stiffness_matrix(pier.youngs_modulus, pier.second_moment_of_area, pier.length, h.k0)
-    first, second = natural_frequencies(mass, initial)[:2]
-    zeta = pier.damping_ratio
-    ops.rayleigh(
-        2.0 * zeta * first * second / (first + second), 0.0, 2.0 * zeta / (first + second), 0.0
-    )
-    ops.constraints("Plain")
-    ops.numberer("Plain")
-    ops.system("ProfileSPD")
-    ops.test("NormDispIncr", 1e-12, 50)
-    ops.algorithm("Newton")
-    ops.integrator("Newmark", 0.5, 0.25)
-    ops.analysis("Transient")
-    begin = time.perf_counter()
-    if history is None:
-        failed = ops.analyze(steps, step)
-    else:
-        failed = 0
-        for _ in range(steps):
-            failed = failed or ops.analyze(1, step)
-            history(float(ops.nodeDisp(3, 1)))
-    spent = time.perf_counter() - begin
-    ops.wipe()
-    if failed:
-        raise RuntimeError("OpenSees did not converge")
-    return spent
-
-
 def _opensees_rate(repeats: int, steps: int) -> float | None:
     case = _case()
     ground = case.ground_motion()
     try:
         spent = [
-            opensees_pier(case.support, ground.acceleration, ground.dt, 5e-4, steps)  # type: ignore[arg-type]
+            time_opensees_pier(case.support, ground.acceleration, ground.dt, 5e-4, steps)  # type: ignore[arg-type]
             for _ in range(repeats)
         ]
-    except ImportError:
+    except InputError:  # not installed
         return None
     return steps / min(spent)
 
@@ -242,6 +146,7 @@ def run_bench(*, repeats: int = 5, seconds: bool = True, short: bool = False) ->
         "lockstep_two_threads_steps_per_s": two,
         "lockstep_over_scalar": lockstep / scalar,
         "two_threads_over_one": two / lockstep,
+        "gpu_steps_per_s": None,
         "elastic_steps_per_s": elastic,
         "grid_steps_per_s": grid,
         "opensees_pier_steps_per_s": opensees,
@@ -255,30 +160,40 @@ def run_bench(*, repeats: int = 5, seconds: bool = True, short: bool = False) ->
     return {**row, "processor": _processor(), "versions": versions()}
 
 
-ROWS = (
-    ("scalar_steps_per_s", "coupled, Bouc-Wen, table contact, one core", "steps/s"),
-    ("scalar_median_steps_per_s", "... median of the repetitions", "steps/s"),
-    ("lockstep_steps_per_s", "many abreast, Bouc-Wen, one core", "scenario-steps/s"),
-    ("lockstep_over_scalar", "... over the single run", "times"),
-    ("lockstep_two_threads_steps_per_s", "many abreast, two threads", "scenario-steps/s"),
-    ("two_threads_over_one", "... over one thread", "times"),
-    ("elastic_steps_per_s", "coupled, elastic hinge", "steps/s"),
-    ("grid_steps_per_s", "coupled, Bouc-Wen, grid contact", "steps/s"),
-    ("opensees_pier_steps_per_s", "OpenSees, the pier alone, its own Bouc-Wen", "steps/s"),
-    ("scalar_over_opensees", "coupled over OpenSees' pier alone", "times"),
-    ("first_result_s", "first run of a 40 s motion, compiling included", "s"),
-    ("warm_command_s", "the same again, from command to files", "s"),
-    ("import_s", "import railquake, the interpreter's start included", "s"),
+RATES = (
+    ("scalar_steps_per_s", "one run: Bouc-Wen, table contact, one core"),
+    ("scalar_median_steps_per_s", "... median of the repetitions"),
+    ("lockstep_steps_per_s", "many abreast, Bouc-Wen, one core"),
+    ("lockstep_two_threads_steps_per_s", "many abreast, two threads"),
+    ("gpu_steps_per_s", "many on a GPU"),
+    ("elastic_steps_per_s", "one run, elastic hinge"),
+    ("grid_steps_per_s", "one run, Bouc-Wen, grid contact"),
+    ("opensees_pier_steps_per_s", "OpenSees, the pier alone, its own Bouc-Wen"),
 )
+TIMES = (
+    ("first_result_s", "first run of a 40 s motion, compiling included"),
+    ("warm_command_s", "the same again, from command to files"),
+    ("import_s", "import railquake, the interpreter's start included"),
+)
+MISSING = {
+    "gpu_steps_per_s": "not measured (no GPU; railquake bench --device cuda where there is one)",
+    "opensees_pier_steps_per_s": "not measured (pip install railquake[bench])",
+}
 
 
 def print_bench(row: dict[str, Any]) -> None:
     """Print the table of `run_bench`."""
     print(f"{row['processor']}, Python {platform.python_version()}")
-    for key, text, unit in ROWS:
+    print(f"{'':50} {'million steps/s':>15} {'to one run':>11}")
+    for key, text in RATES:
         value = row.get(key)
         if value is None:
-            print(f"{text:52} not measured (pip install railquake[bench])")
-        else:
-            shown = f"{value:,.0f}" if value >= 1000.0 else f"{value:,.3g}"
-            print(f"{text:52} {shown:>14} {unit}")
+            print(f"{text:50} {MISSING.get(key, 'not measured')}")
+            continue
+        ratio = value / row["scalar_steps_per_s"]
+        print(f"{text:50} {1e-6 * value:15.3f} {ratio:11.3g}")
+    print(f"{'':50} {'s':>15}")
+    for key, text in TIMES:
+        value = row.get(key)
+        if value is not None:
+            print(f"{text:50} {value:15.3g}")

@@ -1,7 +1,7 @@
 """Many runs: scenarios advance in lockstep, some to a batch, on threads.
 
-Each batch holds as many lanes as `kernel.LOCKSTEP` has.  A lane whose scenario has ended is given
-the next one, so records of different lengths do not wait for each other.  Scenarios that need
+Each batch holds as many lanes as `kernel.lockstep_target` has.  A lane whose scenario has ended is
+given the next one, so records of different lengths do not wait for each other.  Scenarios that need
 another kernel, another contact table or another number of steps a frame go to another batch.
 """
 
@@ -11,9 +11,9 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -22,17 +22,19 @@ from railquake.assessment import assess
 from railquake.errors import InputError
 from railquake.physics import state
 from railquake.physics.energy import audit
-from railquake.physics.kernel import LOCKSTEP
+from railquake.physics.kernel import lockstep_target
 from railquake.response import Response
-from railquake.simulation import simulate
+from railquake.simulation import settled, simulate
+from railquake.time_step import TimeStep, search_time_step
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
 
-__all__ = ["simulate_many"]
+__all__ = ["choose_time_step", "simulate_many"]
 
 Row = dict[str, Any]
 REFRESH_STEPS = 10  # of the hinge's degradation
+REFRESH_TIME = 1e-4  # s; with longer time steps it is refreshed after fewer of them
 CHUNK = 500  # frames that a batch runs without looking up
 OPEN_BATCHES = 16  # of one thread
 
@@ -42,6 +44,7 @@ def simulate_many(
     *,
     threads: int | None = None,
     refresh_steps: int = REFRESH_STEPS,
+    hinge_solve: Literal["linearised", "newton"] = "linearised",
 ) -> Iterator[tuple[int, Row]]:
     """Run many scenarios; any may differ from any other.
 
@@ -52,7 +55,12 @@ def simulate_many(
     threads : int, optional
         All processors by default.
     refresh_steps : int
-        Steps between two evaluations of the hinge's degradation; in between it is extrapolated.
+        Steps between two evaluations of the hinge's degradation, and between two looks at flanges
+        far from their rails; in between the degradation is extrapolated.  With steps above 1e-5 s
+        they are fewer, so that no more than `REFRESH_TIME` passes.
+    hinge_solve : {"linearised", "newton"}
+        One consistently linearised solve of the hinge a step; or each scenario run by `simulate`,
+        which iterates where the scenario says so, at a fifth of the speed.
 
     Yields
     ------
@@ -65,7 +73,7 @@ def simulate_many(
     Raises
     ------
     InputError
-        If ``threads`` or ``refresh_steps`` is not positive.
+        If ``threads`` or ``refresh_steps`` is not positive, or ``hinge_solve`` unknown.
 
     Notes
     -----
@@ -78,11 +86,47 @@ def simulate_many(
         raise InputError(f"threads: must be at least 1, found {count}")
     if refresh_steps < 1:
         raise InputError(f"refresh_steps: must be at least 1, found {refresh_steps}")
-    return _results(enumerate(scenarios), count, refresh_steps)
+    if hinge_solve not in ("linearised", "newton"):
+        raise InputError(f'hinge_solve: must be linearised or newton, found "{hinge_solve}"')
+    singly = hinge_solve == "newton"
+    return _results(enumerate(scenarios), count, refresh_steps, singly)
+
+
+def choose_time_step(
+    scenarios: Sequence[Scenario], tolerance: float | None = None, *, threads: int | None = None
+) -> TimeStep:
+    """Choose time steps for a study by trying some of its scenarios, the hardest.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+        Their own time steps do not matter.
+    tolerance : float, optional
+        Relative error allowed in PBD, PBV and uplift ratio, instead of the scenarios' own.
+    threads : int, optional
+        All processors by default.
+
+    Returns
+    -------
+    TimeStep
+        ``of(scenario)`` gives the step of any other scenario, ``settled(scenario)`` the scenario
+        with it.
+
+    Raises
+    ------
+    InputError
+        If there is no scenario, or one cannot be run.
+    """
+
+    def run(cases: Sequence[Scenario]) -> list[Row]:
+        rows = dict(simulate_many(cases, threads=threads))
+        return [rows[k] for k in range(len(cases))]
+
+    return search_time_step(scenarios, run, tolerance)
 
 
 def _results(
-    scenarios: Iterator[tuple[int, Scenario]], threads: int, refresh_steps: int
+    scenarios: Iterator[tuple[int, Scenario]], threads: int, refresh_steps: int, singly: bool
 ) -> Iterator[tuple[int, Row]]:
     found: queue.Queue[tuple[int, Row] | BaseException | None] = queue.Queue(maxsize=256)
     stop = threading.Event()
@@ -102,7 +146,7 @@ def _results(
 
     def work() -> None:
         try:
-            for item in _run(iter(draw, None), refresh_steps, stop):
+            for item in _run(iter(draw, None), refresh_steps, singly, stop):
                 put(item)
         except BaseException as error:
             put(error)
@@ -129,19 +173,23 @@ def _results(
 
 
 def _run(
-    scenarios: Iterator[tuple[int, Scenario]], refresh_steps: int, stop: threading.Event
+    scenarios: Iterator[tuple[int, Scenario]],
+    refresh_steps: int,
+    singly: bool,
+    stop: threading.Event,
 ) -> Iterator[tuple[int, Row]]:
     """One thread's share."""
     batches: dict[Any, _Batch] = {}
     for index, scenario in scenarios:
         begin = time.perf_counter()
         try:
-            system = assemble(scenario)
+            settled_scenario, choice = settled(scenario)
+            system = assemble(settled_scenario)
         except InputError as error:
             yield index, {"status": "failed", "error": str(error)}
             continue
-        if scenario.solver.contact == "grid":
-            yield index, assess(simulate(system))
+        if singly or scenario.solver.contact == "grid":
+            yield index, assess(replace(simulate(system), time_step=choice))
             continue
         key = _group(system)
         if key not in batches:
@@ -152,7 +200,7 @@ def _run(
         batch = batches[key]
         while batch.is_full and not stop.is_set():
             yield from batch.advance()
-        batch.load(_Job(index, system, begin))
+        batch.load(_Job(index, system, begin, choice))
     for batch in batches.values():
         yield from batch.drained(stop)
 
@@ -165,6 +213,7 @@ def _group(system: System) -> Any:
         laws,
         system.vehicle.mass.shape,
         system.block,
+        system.dt,
         system.frame_steps,
         system.drive.shape[1],
         id(system.geometry.table),
@@ -176,6 +225,7 @@ class _Job:
     index: int
     system: System
     begin: float
+    choice: TimeStep | None
     march_s: float = 0.0
 
 
@@ -183,9 +233,9 @@ class _Batch:
     """Lanes that advance together."""
 
     def __init__(self, system: System, refresh_steps: int) -> None:
-        lanes = LOCKSTEP.lanes
-        self.refresh_steps = refresh_steps
-        self.kernel = system.kernel(LOCKSTEP)
+        lanes = lockstep_target().lanes
+        self.refresh_steps = max(1, min(refresh_steps, round(REFRESH_TIME / system.dt)))
+        self.kernel = system.kernel(lockstep_target())
         self.geometry = system.geometry
         self.idle = system.start.copy()
         self.idle[state.ON_TRACK] = 0.0
@@ -279,6 +329,7 @@ class _Batch:
                 audit=audit(system.start, end, system.constants),
                 wall_s=time.perf_counter() - job.begin,
                 march_s=job.march_s,
+                time_step=job.choice,
             )
         )
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import xarray
 
     from railquake.assembly import System
+    from railquake.time_step import TimeStep
 
 __all__ = ["EVENT_NAMES", "Event", "Response", "channels"]
 
@@ -131,6 +132,8 @@ class Response:
         Time that the whole run took.
     march_s : float
         Time spent in the kernel, compilation apart.
+    time_step : TimeStep, optional
+        How the step was chosen, where the scenario left it open.
     """
 
     system: System
@@ -139,6 +142,7 @@ class Response:
     audit: EnergyAudit
     wall_s: float
     march_s: float
+    time_step: TimeStep | None = None
 
     @property
     def steps(self) -> int:

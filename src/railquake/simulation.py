@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from railquake.assembly import System, assemble
+from railquake.assessment import assess
 from railquake.physics import state
 from railquake.physics.energy import audit
 from railquake.physics.kernel import SCALAR, Target
 from railquake.response import Response, channels
+from railquake.time_step import TimeStep, search_time_step
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
 
-__all__ = ["simulate"]
+__all__ = ["settled", "simulate"]
 
 CHUNK = 500  # frames between two signs of life
 COMPILING = "compiling the kernel for this machine (once; about half a minute) ..."
@@ -52,7 +54,12 @@ def simulate(
         If the scenario cannot be run; see `assemble`.
     """
     begin = time.perf_counter()
-    system = scenario if isinstance(scenario, System) else assemble(scenario)
+    choice = None
+    if isinstance(scenario, System):
+        system = scenario
+    else:
+        scenario, choice = settled(scenario, notify)
+        system = assemble(scenario)
     kernel = system.kernel(target)
     rows = np.array([row for _, row, _, _ in channels(system.vehicle.bodies)])
     end = system.start.copy()
@@ -83,7 +90,23 @@ def simulate(
         audit=audit(system.start, end, system.constants),
         wall_s=now - begin,
         march_s=now - march,
+        time_step=choice,
     )
+
+
+def settled(
+    scenario: Scenario, notify: Callable[[str], None] | None = None
+) -> tuple[Scenario, TimeStep | None]:
+    """A scenario with its time step, and how that was chosen where it says ``dt = "auto"``.
+
+    Many scenarios of one study are better settled together, by `lockstep.choose_time_step`.
+    """
+    if scenario.solver.dt != "auto":
+        return scenario, None
+    choice = search_time_step([scenario], lambda cases: [assess(simulate(case)) for case in cases])
+    if notify is not None:
+        notify(choice.text)
+    return choice.settled(scenario), choice
 
 
 def _absolute(frames: np.ndarray, rows: np.ndarray) -> None:

@@ -5,7 +5,7 @@ import pytest
 
 import railquake as rq
 from railquake.assembly.system import System
-from railquake.physics.kernel import LOCKSTEP
+from railquake.physics.kernel import lockstep_target, wide_register
 
 SHORT = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
 TIMINGS = ("wall_s", "steps_per_s", "versions")
@@ -111,10 +111,7 @@ def test_an_error_in_the_callers_scenarios_reaches_the_caller():
 
 def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
     """The speed rests on it, and a stray branch in a stage silently loses it."""
-    import llvmlite.binding
-
-    features = llvmlite.binding.get_host_cpu_features()
-    register = "%zmm" if features.get("avx512f") else "%ymm" if features.get("avx2") else None
+    register = wide_register()
     if register is None:
         pytest.skip("no wide vectors on this machine")
     from railquake.physics import kernel
@@ -123,16 +120,28 @@ def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
     kernel._bind_cached.cache_clear()
     system: System = rq.assemble(rq.scenario(synthetic=SHORT))
     try:
-        made = system.kernel(LOCKSTEP).call
-        lanes = np.zeros(LOCKSTEP.lanes, dtype=np.int64)
+        target = lockstep_target()
+        made = system.kernel(target).call
+        lanes = np.zeros(target.lanes, dtype=np.int64)
         made(
-            np.repeat(system.start, LOCKSTEP.lanes, axis=1),
-            np.repeat(system.constants, LOCKSTEP.lanes, axis=1),
-            system.geometry, system.drive, lanes, lanes, lanes, 0, LOCKSTEP.lanes, 10,
+            np.repeat(system.start, target.lanes, axis=1),
+            np.repeat(system.constants, target.lanes, axis=1),
+            system.geometry, system.drive, lanes, lanes, lanes, 0, target.lanes, 10,
         )  # fmt: skip
         code = next(iter(made.inspect_asm().values()))
     finally:
         kernel._bind_cached.cache_clear()
-    packed = sum(register in line and "pd" in line.split("\t")[1] for line in code.splitlines()
-                 if line.startswith("\t") and len(line.split("\t")) > 1)  # fmt: skip
+    instructions = [line.split("\t") for line in code.splitlines() if line.startswith("\t")]
+    packed = sum(
+        "pd" in parts[1] and f"%{register}" in parts[2] for parts in instructions if len(parts) > 2
+    )
     assert packed > 1500
+
+
+def test_one_by_one_is_the_single_engine():
+    cases = mixed()[:2]
+    rows = dict(rq.simulate_many(cases, threads=1, hinge_solve="newton"))
+    for index, case in enumerate(cases):
+        assert untimed(rows[index]) == untimed(rq.assess(rq.simulate(case)))
+    with pytest.raises(rq.InputError, match="hinge_solve"):
+        rq.simulate_many([], hinge_solve="euler")

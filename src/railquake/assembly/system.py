@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
     from railquake.inputs.solver import Solver
 
-__all__ = ["CREEP_LAWS", "GRAVITY", "System", "assemble", "hinge_parameters"]
+__all__ = ["CREEP_LAWS", "GRAVITY", "System", "assemble", "critical_time_step", "hinge_parameters"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Laws = dict["Callable[..., Any]", "Callable[..., Any]"]
@@ -54,6 +54,7 @@ Laws = dict["Callable[..., Any]", "Callable[..., Any]"]
 GRAVITY = 9.80665  # m/s2
 UNKNOWN_DEGRADATION = statics.UNKNOWN_DEGRADATION
 MOST_STEPS = 1e10  # of a run; about an hour
+SHORT_STEP = 1e-9  # s
 SHIFT_LIMIT = 0.127  # lateral shift that counts as derailed, m (5 in)
 ROLL_LIMIT = math.pi / 4.0  # relative roll that counts as overturned
 
@@ -158,13 +159,13 @@ def assemble(scenario: Scenario) -> System:
     """
     solver = scenario.solver
     ground = scenario.ground_motion()
-    steps = ground.duration / solver.dt
+    steps = ground.duration / solver.step
     if steps > MOST_STEPS:
         raise InputError(
-            f"solver.dt: {solver.dt:g} s takes {steps:.3g} steps over {ground.duration:g} s; at "
+            f"solver.dt: {solver.step:g} s takes {steps:.3g} steps over {ground.duration:g} s; at "
             f"most {MOST_STEPS:.0e} are possible: take a longer step"
         )
-    drive = _drive(scenario, ground, solver.dt * _frame_steps(solver))
+    drive = _drive(scenario, ground, solver.step * _frame_steps(solver))
     drive.setflags(write=False)
     if isinstance(scenario.support, PrescribedTrack):
         rest = _assemble_at_rest(scenario, drive[0, [2, 4, 6]])
@@ -182,6 +183,27 @@ def assemble(scenario: Scenario) -> System:
         rest.critical_dt,
         rest.static_wheel_load,
     )
+
+
+def critical_time_step(scenario: Scenario) -> float:
+    """Longest stable time step of the scenario at static load, s; ``solver.dt`` does not matter.
+
+    Raises
+    ------
+    InputError
+        If the scenario cannot be assembled.
+    """
+    if isinstance(scenario.support, PrescribedTrack):
+        track = scenario.support.track_motion()
+        first = np.array([track.y[0], track.z[0], track.roll[0]])
+        return _assemble_at_rest(_with_short_step(scenario), first).critical_dt
+    return _remembered(_with_short_step(scenario)).critical_dt
+
+
+def _with_short_step(scenario: Scenario) -> Scenario:
+    """With a step below any critical one."""
+    solver = scenario.solver.model_copy(update={"dt": SHORT_STEP})
+    return scenario.model_copy(update={"solver": solver})
 
 
 class _AtRest(NamedTuple):
@@ -232,7 +254,7 @@ def _stat(path: str) -> os.stat_result | None:
 
 def _frame_steps(solver: Solver) -> int:
     """Time steps in a frame."""
-    return max(1, round(solver.history_step / solver.dt))
+    return max(1, round(solver.history_step / solver.step))
 
 
 def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
@@ -254,13 +276,13 @@ def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
     S = np.zeros((state.VEHICLE + state.VEHICLE_BLOCKS * dofs, 1))
     Q = np.zeros((constant.VEHICLE + dofs // 3 + dofs + dofs * (dofs + 1), 1))
     q = Q[:, 0]
-    q[constant.DT] = solver.dt
-    q[constant.RATE] = 1.0 / solver.dt
+    q[constant.DT] = solver.step
+    q[constant.RATE] = 1.0 / solver.step
     q[constant.FRAME_STEPS] = frame_steps
     _fill_vehicle(q, scenario, matrices)
     _fill_contact(q, scenario)
     q[constant.FILTER_B0 : constant.FILTER_B0 + 5] = low_pass_coefficients(
-        solver.lateral_force_filter, solver.dt * frame_steps
+        solver.lateral_force_filter, solver.step * frame_steps
     )
     load = 0.5 * float(matrices.mass[1::3].sum()) * GRAVITY
     q[constant.STATIC_WHEEL_LOAD] = load
@@ -320,9 +342,9 @@ def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
     critical = _critical_time_step(
         vehicle_rest, drift, matrices, forces, track, solver.phi, solver.psi
     )
-    if solver.dt > critical:
+    if solver.step > critical:
         raise InputError(
-            f"solver.dt: {solver.dt:g} s is above the critical time step of {critical:.3g} s "
+            f"solver.dt: {solver.step:g} s is above the critical time step of {critical:.3g} s "
             "(contact stiffness and creep damping at static load); take a smaller one, "
             f"such as {_rounded_down(0.5 * critical):g} s"
         )

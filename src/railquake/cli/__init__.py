@@ -3,8 +3,19 @@
 A module a group of commands; each registers with `application.app` when it is imported here.
 """
 
-from railquake.cli import bench, probe, report, select, single, study
+from railquake.cli import bench, calibrate, probe, report, select, single, study, validate
 from railquake.cli.application import app
 from railquake.cli.status import main
 
-__all__ = ["app", "bench", "main", "probe", "report", "select", "single", "study"]
+__all__ = [
+    "app",
+    "bench",
+    "calibrate",
+    "main",
+    "probe",
+    "report",
+    "select",
+    "single",
+    "study",
+    "validate",
+]

@@ -27,7 +27,7 @@ class Input:
 
     Attributes
     ----------
-    path : str
+    field_path : str
         As in an override: ``"vehicle.speed"``.
     kind : {"number", "integer", "flag", "text", "any"}
         What it takes; ``any`` for tables and the like.
@@ -37,7 +37,7 @@ class Input:
         Of a number.
     """
 
-    path: str
+    field_path: str
     kind: Kind
     dimension: str | None = None
     sign: Sign = "any"

@@ -203,6 +203,8 @@ def _canonical(section: InputModel) -> str:
     if not isinstance(section, Motion | Solver):
         for key in _NOT_PHYSICS:
             data.pop(key, None)
+    if isinstance(section, Solver) and section.dt != "auto":
+        data.pop("time_step_tolerance")
     tables = [(data, "file"), (data, "record"), (data, "vertical")]
     tables += [(data[key], "file") for key in ("wheel", "rail") if key in data]
     for table, key in tables:

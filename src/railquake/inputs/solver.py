@@ -6,19 +6,32 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from railquake.errors import InputError
 from railquake.inputs._model import InputModel, Integer, inconsistent
 from railquake.inputs.units import (
     NonNegativeNumber,
     PositiveFrequency,
     PositiveNumber,
     PositiveTime,
+    Quantity,
 )
 
 
 class Solver(InputModel):
     """How the equations are marched in time."""
 
-    dt: Annotated[PositiveTime, Field(description="Time step [s]")] = 1e-5
+    dt: Annotated[
+        float | Literal["auto"],
+        Quantity("time", "positive", word="auto"),
+        Field(
+            description='Time step [s], or "auto": the longest that keeps peak displacement, peak '
+            "velocity and uplift within time_step_tolerance"
+        ),
+    ] = 1e-5
+    time_step_tolerance: Annotated[
+        PositiveNumber,
+        Field(lt=1.0, description='Relative error that dt = "auto" may make [1]'),
+    ] = 0.01
     contact: Annotated[
         Literal["table", "grid"], Field(description="How contact is found; grid is the reference")
     ] = "table"
@@ -50,11 +63,21 @@ class Solver(InputModel):
         PositiveFrequency, Field(description="Low-pass corner of the filtered lateral force [Hz]")
     ] = 20.0
 
+    @property
+    def step(self) -> float:
+        """The time step, s; ``dt = "auto"`` has been settled before (`time_step.settled`)."""
+        if self.dt == "auto":
+            raise InputError(
+                'solver.dt: "auto" is not settled; run the scenario by simulate or simulate_many, '
+                "or name a time step"
+            )
+        return float(self.dt)
+
     @model_validator(mode="after")
     def _history_is_coarser(self) -> Solver:
-        if self.history_step < self.dt * (1.0 - 1e-9):
+        if self.dt != "auto" and self.history_step < self.step * (1.0 - 1e-9):
             raise inconsistent(
-                f"must be at least the time step, {self.dt:g} s, found {self.history_step:g} s",
+                f"must be at least the time step, {self.step:g} s, found {self.history_step:g} s",
                 "history_step",
             )
         return self

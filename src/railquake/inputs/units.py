@@ -282,10 +282,13 @@ class Quantity:
         A key of :data:`DIMENSIONS`.
     sign : {"any", "non-negative", "positive"}
         What the value may be.
+    word : str, optional
+        A word that may stand in its place, such as ``"auto"``; the field then holds it.
     """
 
     dimension: str
     sign: Sign = "any"
+    word: str | None = None
 
     @property
     def example(self) -> str:
@@ -296,17 +299,20 @@ class Quantity:
         self, _source: Any, _handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
         """Validate by this module's parser alone."""
-        dimension, sign = DIMENSIONS[self.dimension], self.sign
+        dimension, sign, word = DIMENSIONS[self.dimension], self.sign, self.word
 
-        def validate(value: Any) -> float:
+        def validate(value: Any) -> float | str:
+            if word is not None and value == word:
+                return word
             try:
                 return _parsed(value, dimension, sign)
             except _QuantityError as error:
                 raise PydanticCustomError("quantity", "{reason}", {"reason": str(error)}) from error
 
-        validator: Callable[[Any], float] = validate
+        validator: Callable[[Any], float | str] = validate
+        plain: Callable[[Any], Any] = float if word is None else lambda held: held
         return core_schema.no_info_plain_validator_function(
-            validator, serialization=core_schema.plain_serializer_function_ser_schema(float)
+            validator, serialization=core_schema.plain_serializer_function_ser_schema(plain)
         )
 
     def __get_pydantic_json_schema__(
@@ -319,9 +325,10 @@ class Quantity:
             number["exclusiveMinimum"] = 0
         elif self.sign == "non-negative":
             number["minimum"] = 0
+        words = [] if self.word is None else [self.word]
         if not dimension.si_unit:
             return number
-        return {"anyOf": [number, {"type": "string", "examples": [dimension.example]}]}
+        return {"anyOf": [number, {"type": "string", "examples": [dimension.example, *words]}]}
 
 
 Number = Annotated[float, Quantity("number")]

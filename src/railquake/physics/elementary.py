@@ -12,6 +12,7 @@ __all__ = [
     "exponential",
     "exponential_polynomial",
     "float_of",
+    "floor_of",
     "power",
     "power_polynomial",
     "sin_cos",
@@ -20,7 +21,15 @@ __all__ = [
 LOG2_E = 1.4426950408889634
 LN_2 = 0.6931471805599453
 MANTISSA = 0x000FFFFFFFFFFFFF
+EXPONENT = 0x7FF0000000000000
 ONE = 0x3FF0000000000000
+# Integers and doubles change places by adding numbers whose last bit is worth 1: most vector units
+# have no instruction that converts 64-bit integers.
+WHOLE = (
+    6755399441055744.0  # 1.5 * 2^52: a whole number below 2^51 added to it sits in the last bits
+)
+WHOLE_BITS = 0x4330000000000000  # 2^52
+WHOLE_BIAS = 4503599627371519.0  # 2^52 + 1023
 
 
 def exponential(x: float) -> float:
@@ -43,10 +52,15 @@ def float_of(bits: int) -> float:
     return float(struct.unpack("<d", struct.pack("<q", bits))[0])
 
 
+def floor_of(x: float) -> float:
+    """Largest whole number up to x, as a double."""
+    return float(math.floor(x))
+
+
 def exponential_2(y: float) -> float:
     """2^y, for y held within the doubles' range: a power of two times a polynomial of the rest."""
     bounded = min(max(y, -1021.0), 1023.0)
-    whole = math.floor(bounded + 0.5)
+    whole = floor_of(bounded + 0.5)
     r = LN_2 * (bounded - whole)
     q = r * r
     # Taylor series, abs(r) <= 0.347: error below 3e-16
@@ -63,7 +77,8 @@ def exponential_2(y: float) -> float:
         1.0 / 6.0
         + q * (1.0 / 120.0 + q * (1.0 / 5040.0 + q * (1.0 / 362880.0 + q * (1.0 / 39916800.0))))
     )
-    return float_of((int(whole) + 1023) << 52) * (even + r * odd)
+    power_of_2 = float_of(((bits_of(whole + WHOLE) + 1023) & 0x7FF) << 52)
+    return power_of_2 * (even + r * odd)
 
 
 def exponential_polynomial(x: float) -> float:
@@ -77,7 +92,7 @@ def logarithm_2(x: float) -> float:
     mantissa = float_of((bits & MANTISSA) | ONE)
     large = mantissa > 1.4142135623730951
     m = 0.5 * mantissa if large else mantissa
-    exponent = (bits >> 52) - 1023
+    exponent = float_of(((bits & EXPONENT) >> 52) | WHOLE_BITS) - WHOLE_BIAS
     t = (m - 1.0) / (m + 1.0)
     q = t * t
     # ln m = 2 (t + t^3/3 + t^5/5 ...), abs(t) <= 0.1716: error below 2e-17

@@ -19,14 +19,15 @@ from types import FunctionType
 from typing import Any
 
 __all__ = [
-    "LOCKSTEP",
     "PYTHON",
     "SCALAR",
     "Kernel",
     "Target",
     "bind",
     "cache_folder",
+    "lockstep_target",
     "source_hash",
+    "wide_register",
 ]
 
 Law = Callable[..., Any]
@@ -57,8 +58,26 @@ class Target:
 
 PYTHON = Target("python", compiled=False)
 SCALAR = Target("scalar", compiled=True)
-# Eight lanes of doubles fill a 512-bit register, and their state fits into a 32 kB cache.
-LOCKSTEP = Target("lockstep", compiled=True, lanes=8)
+
+
+@cache
+def lockstep_target() -> Target:
+    """Target that runs scenarios abreast: one to each double of the machine's widest vectors.
+
+    Two such vectors to a stage are no faster: their state leaves the first-level cache.
+    """
+    return Target("lockstep", compiled=True, lanes=8 if wide_register() == "zmm" else 4)
+
+
+@cache
+def wide_register() -> str | None:
+    """Register of the machine's widest vectors, as assembly calls it; None if they are narrow."""
+    import llvmlite.binding
+
+    features = llvmlite.binding.get_host_cpu_features()
+    if features.get("avx512f"):
+        return "zmm"
+    return "ymm" if features.get("avx2") else None
 
 
 @dataclass(frozen=True)
@@ -202,8 +221,8 @@ def _finish(function: Law, target: Target) -> Law:
         return function
     import numba
 
-    if function.__name__ in ("bits_of", "float_of"):
-        return _bit_casts()[function.__name__]
+    if function.__name__ in ("bits_of", "float_of", "floor_of"):
+        return _instructions()[function.__name__]
 
     # without counting references to arrays ("_nrt"): a law neither makes nor keeps any
     options: dict[str, Any] = {"error_model": "numpy", "fastmath": set(FASTMATH), "_nrt": False}
@@ -218,8 +237,9 @@ def _finish(function: Law, target: Target) -> Law:
 
 
 @cache
-def _bit_casts() -> dict[str, Law]:
-    """Compiled counterparts of `elementary.bits_of` and `elementary.float_of`."""
+def _instructions() -> dict[str, Law]:
+    """Compiled counterparts of `elementary.bits_of`, `float_of` and `floor_of`."""
+    from llvmlite import ir
     from numba.core import types
     from numba.extending import intrinsic
 
@@ -233,7 +253,16 @@ def _bit_casts() -> dict[str, Law]:
         law: Law = intrinsic(typed)
         return law
 
+    def floor_typed(typing_context: Any, value: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            name = "llvm.floor"
+            floor = builder.module.declare_intrinsic(name, [ir.DoubleType()])
+            return builder.call(floor, arguments)
+
+        return types.float64(types.float64), generate
+
     return {
+        "floor_of": intrinsic(floor_typed),
         "bits_of": cast(types.float64, types.int64),
         "float_of": cast(types.int64, types.float64),
     }

@@ -13,7 +13,7 @@ import numpy as np
 from railquake.physics import constant, state
 from railquake.physics.contact import normal_force, onset_hysteresis
 from railquake.physics.creep import reduction_shen_hedrick_elkins
-from railquake.physics.elementary import sin_cos
+from railquake.physics.elementary import floor_of, sin_cos
 from railquake.physics.pier import move_structure, move_track, refresh_hinge
 from railquake.physics.profiles import (
     FIELDS,
@@ -642,7 +642,7 @@ def watch(S: Array, Q: Array, lane: int) -> None:
     holds_overturned = abs(roll) >= Q[constant.ROLL_LIMIT, lane] or (beyond > 0.0 and holds_onset)
     flags = S[state.FLAGS, lane]
     time = S[state.TIME, lane]
-    was_up = math.floor(flags * 0.5) - 2.0 * math.floor(flags * 0.25)
+    was_up = floor_of(flags * 0.5) - 2.0 * floor_of(flags * 0.25)
     now_up = on if holds_uplift else 0.0
     S[state.UPLIFTS, lane] += now_up * (1.0 - was_up)
     S[state.UPLIFT_END, lane] = time if was_up * (1.0 - now_up) > 0.0 else S[state.UPLIFT_END, lane]

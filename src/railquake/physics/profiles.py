@@ -27,6 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from railquake.physics.contact import hertz_lookup
+from railquake.physics.elementary import floor_of
 
 __all__ = [
     "FIELDS",
@@ -135,7 +136,7 @@ def axis_cell(
     first = coarse_cells if inside else (coarse_cells + inner_cells if right else 0.0)
     cells = inner_cells if inside else coarse_cells
     place = (bounded - origin) * rate
-    cell = min(max(math.floor(place), 0.0), cells - 1.0)
+    cell = min(max(floor_of(place), 0.0), cells - 1.0)
     return first + cell, place - cell, rate
 
 

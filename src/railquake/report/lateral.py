@@ -81,5 +81,7 @@ def _two_lines(fit: LevelOff, x: np.ndarray, y: np.ndarray, look: Look) -> Line:
         return before + fit.slope_beyond.value * np.maximum(at - knee, 0.0)
 
     offset = float(np.mean(np.log(y) - rise(np.log(x))))
-    return Line(f"two power laws, {look.label}", look.colour, np.exp(u), np.exp(offset + rise(u)), width=1.6,
-                in_legend=False)  # fmt: skip
+    return Line(
+        f"two power laws, {look.label}", look.colour, np.exp(u), np.exp(offset + rise(u)),
+        width=1.6, in_legend=False,
+    )  # fmt: skip

@@ -16,6 +16,7 @@ from railquake.study.design import Design
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
     from railquake.study.file import Study
+    from railquake.time_step import TimeStep
 
 __all__ = ["Batch", "Ended", "kept_design", "run_batch"]
 
@@ -33,14 +34,14 @@ class Batch:
         Tells studies apart within a process.
     study : Study
         Its suite loaded.
-    time_step : float or None
-        Where the study leaves it open, s.
+    time_step : TimeStep or None
+        Where the study leaves it open.
     rows : tuple of int
     """
 
     key: str
     study: Study
-    time_step: float | None
+    time_step: TimeStep | None
     rows: tuple[int, ...]
 
 
@@ -94,7 +95,7 @@ def run_batch(
                 done[row] = {"status": "failed", "error": str(error)}
 
     try:
-        for row, measures in _run(scenarios(batch.rows), REFRESH_STEPS, stop):
+        for row, measures in _run(scenarios(batch.rows), REFRESH_STEPS, False, stop):
             done[row] = measures
     except Exception:
         # one of them has a fault that nobody foresaw: the others shall not suffer
@@ -102,10 +103,14 @@ def run_batch(
             if row in done or stop.is_set():
                 continue
             try:
-                done.update(_run(scenarios([row]), REFRESH_STEPS, stop))
+                done.update(_run(scenarios([row]), REFRESH_STEPS, False, stop))
             except Exception as error:
                 text = " ".join(f"{type(error).__name__}: {error}".split())
                 done[row] = {"status": "failed", "error": f"unexpected: {text}"}
+    if batch.time_step is not None:
+        for row, measures in done.items():
+            if "dt_error" in measures and "solver.dt" not in design.point(row).changes:
+                measures["dt_error"] = batch.time_step.error
     return list(done.items())
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import socket
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -56,14 +57,9 @@ def cluster_executor(address: str, say: Callable[[str], None]) -> Iterator[tuple
             f"--scheduler: no scheduler answers at {address} ({error.strerror or error}); start "
             "one with: dask scheduler"
         ) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # one line says it all
-    try:
-        connect: Any = distributed.Client
-        client = connect(address, timeout=PATIENCE_S, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise InputError(
-            f"--scheduler: what answers at {address} is no Dask scheduler ({_first_line(error)})"
-        ) from None
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # one line says it all
+    client = _connected(distributed.Client, address)
     with client:
         if not client.nthreads():
             say(f"no worker has joined {address} yet; waiting for one")
@@ -74,6 +70,25 @@ def cluster_executor(address: str, say: Callable[[str], None]) -> Iterator[tuple
             yield executor, threads
         finally:
             executor.shutdown(wait=False)
+
+
+def _connected(connect: Any, address: str) -> Any:
+    """A client of the scheduler; from a thread of its own, as it may try for ever."""
+    found: list[Any] = []
+
+    def attempt() -> None:
+        try:
+            found.append(connect(address, timeout=PATIENCE_S, set_as_default=False))
+        except Exception as error:
+            found.append(error)
+
+    thread = threading.Thread(target=attempt, daemon=True)
+    thread.start()
+    thread.join(3.0 * PATIENCE_S)
+    if not found or isinstance(found[0], Exception):
+        reason = f" ({_first_line(found[0])})" if found else ""
+        raise InputError(f"--scheduler: what answers at {address} is no Dask scheduler{reason}")
+    return found[0]
 
 
 def _first_line(error: BaseException) -> str:

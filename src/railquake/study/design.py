@@ -26,6 +26,7 @@ from railquake.suite import Suite, SuiteMember
 
 if TYPE_CHECKING:
     from railquake.study.file import Study
+    from railquake.time_step import TimeStep
 
 __all__ = ["Design", "Point"]
 
@@ -81,18 +82,16 @@ class Design:
     ----------
     study : Study
         Its suite loaded.
-    time_step : float, optional
-        What was chosen where the study leaves it open, s.
+    time_step : TimeStep, optional
+        What was chosen where the study leaves it open; without it scenarios leave it open, too.
     """
 
-    def __init__(self, study: Study, time_step: float | None = None) -> None:
+    def __init__(self, study: Study, time_step: TimeStep | None = None) -> None:
         assert study.suite is None or isinstance(study.suite, Suite), "the suite is loaded first"
         self.study = study
         self.where = study.where
+        self._time_step = time_step
         base = dict(study.base)
-        if study.chooses_time_step:
-            solver = {key: value for key, value in base["solver"].items() if key != "dt"}
-            base["solver"] = solver if time_step is None else {**solver, "dt": time_step}
         motion = base.pop("motion", None)
         self._base = base
         if study.suite is not None:
@@ -109,6 +108,7 @@ class Design:
         self.samples = study.sampling.count if study.sampling is not None else 1
         self._moves = any(map(_is_motion, self._paths()))
         self._sections: OrderedDict[tuple[str, str], tuple[Any, str]] = OrderedDict()
+        self._solvers: OrderedDict[tuple[str, ...], tuple[Any, str]] = OrderedDict()
         self._motions: OrderedDict[tuple[int, str], Motion | None] = OrderedDict()
         self._lock = Lock()
 
@@ -216,6 +216,9 @@ class Design:
         scenario = Scenario.model_construct(
             motion=motion, **{key: section for key, (section, _) in parts.items()}
         )
+        if scenario.solver.dt == "auto" and self._time_step is not None:
+            parts["solver"] = self._settled(scenario, tuple(text for _, text in parts.values()))
+            scenario = scenario.model_copy(update={"solver": parts["solver"][0]})
         texts = {key: text for key, (_, text) in parts.items()}
         key = hash_of_fingerprints({**texts, "motion": fingerprint(motion)})
         return scenario, key, tuple(texts.values())
@@ -232,6 +235,17 @@ class Design:
         section = getattr(made, key)
         result = section, fingerprint(section)
         _remember(self._sections, name, result, self._lock)
+        return result
+
+    def _settled(self, scenario: Scenario, name: tuple[str, ...]) -> tuple[Any, str]:
+        """The solver with the time step that was chosen, found once for all motions."""
+        assert self._time_step is not None  # by the caller
+        with self._lock:
+            if name in self._solvers:
+                return self._solvers[name]
+        solver = self._time_step.settled(scenario).solver
+        result = solver, fingerprint(solver)
+        _remember(self._solvers, name, result, self._lock)
         return result
 
     def _motion(self, point: Point) -> Motion | None:

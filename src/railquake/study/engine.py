@@ -8,8 +8,6 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
-    BrokenExecutor,
-    CancelledError,
     Executor,
     Future,
     wait,
@@ -22,8 +20,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import REFRESH_STEPS, _Batch, _group
-from railquake.physics.kernel import LOCKSTEP
+from railquake.lockstep import REFRESH_STEPS, _Batch, _group, choose_time_step
+from railquake.physics.kernel import lockstep_target
 from railquake.study.batches import Batch, Ended, kept_design, run_batch
 from railquake.study.design import Design
 from railquake.study.folder import ResultsFolder, no_note
@@ -35,6 +33,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
     from railquake.study.file import Study
+    from railquake.time_step import TimeStep
 
 __all__ = ["StudyProgress", "run_study"]
 
@@ -140,19 +139,19 @@ def _executor(
 
 def _time_step(
     design: Design, folder: ResultsFolder, jobs: int | None, say: Callable[[str], None]
-) -> float | None:
+) -> TimeStep | None:
     """The time step where the study leaves it open: chosen once, then read."""
     if not design.study.chooses_time_step:
         return None
     known = folder.time_step()
     if known is not None:
         return known
-    from railquake.time_step import choose_time_step
-
-    chosen = choose_time_step(hardest(design), threads=jobs)
+    tried = [scenario for scenario in hardest(design) if scenario.solver.dt == "auto"]
+    if not tried:
+        return None  # an axis sets it
+    chosen = choose_time_step(tried, threads=jobs)
     say(chosen.text)
-    facts = {"dt_s": chosen.dt, "largest_relative_change": chosen.error, "text": chosen.text}
-    return folder.note_time_step(facts)
+    return folder.note_time_step(chosen)
 
 
 def _compile(design: Design, work: Work, say: Callable[[str], None]) -> None:
@@ -172,7 +171,7 @@ def _compile(design: Design, work: Work, say: Callable[[str], None]) -> None:
             if group in seen:
                 continue
             seen.add(group)
-            if not system.kernel(LOCKSTEP).is_cached:
+            if not system.kernel(lockstep_target()).is_cached:
                 say(COMPILING)
             _Batch(system, REFRESH_STEPS).advance()
 
@@ -206,10 +205,16 @@ def _run_all(
                 keeper.take(future.result())
                 running.remove(future)
             keeper.flush()
-    except (CancelledError, BrokenExecutor, OSError) as error:
+    except (KeyboardInterrupt, InputError):
+        raise
+    except Exception as error:
+        if stop is not None:
+            raise  # in this process it is a fault of the program
+        text = (str(error).splitlines() or [""])[0]
         raise InputError(
-            f"study: the workers are gone ({type(error).__name__}); finished rows are kept: run "
-            "the same command again to go on"
+            f"study: the workers failed ({type(error).__name__}{': ' if text else ''}{text}); "
+            "finished rows are kept: see that they run this version of railquake and reach its "
+            "files, and run the same command again to go on"
         ) from None
     finally:
         try:

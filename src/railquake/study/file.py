@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
 from railquake.inputs._model import did_you_mean, toml_type
-from railquake.inputs._toml import is_path, merged, read_toml
+from railquake.inputs._toml import is_path, merged, read_toml, with_overrides
 from railquake.inputs.presets import KINDS, with_absolute_paths
-from railquake.inputs.scenario import Scenario
+from railquake.inputs.scenario import Overrides, Scenario
 from railquake.inputs.units import shown
-from railquake.study.axes import ListAxis, VariantAxis
+from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
 from railquake.study.parsing import parse_axes, parse_sampling
 from railquake.suite import SUITES, Suite, SuiteMember, load_suite
@@ -109,8 +109,6 @@ class Study:
                         f"{self.where}: axes.{axis.column}: {path} is given by the suite; leave "
                         "out one of them"
                     )
-                if path == "solver.dt" and isinstance(axis, ListAxis) and AUTO in axis.values:
-                    raise InputError(f'{self.where}: axes.solver.dt: "auto" belongs in the base')
 
     @classmethod
     def from_dict(
@@ -285,13 +283,15 @@ class Study:
         )
 
 
-def load_study(path: str | Path) -> Study:
+def load_study(path: str | Path, overrides: Overrides = ()) -> Study:
     """Read a study file.
 
     Parameters
     ----------
     path : str or Path
         TOML file; relative paths in it start from its folder.
+    overrides : iterable of str, or mapping
+        Values to change, by their paths in the file: ``["base.solver.dt=auto"]``.
 
     Returns
     -------
@@ -302,7 +302,8 @@ def load_study(path: str | Path) -> Study:
     InputError
         Naming the file and the line or field, what was found and what to write.
     """
-    return Study.from_dict(read_toml(path), Path(path).absolute().parent, where=str(path))
+    tables = with_overrides(read_toml(path), overrides, f"{path}: --set")
+    return Study.from_dict(tables, Path(path).absolute().parent, where=str(path))
 
 
 def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import tempfile
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,7 @@ from railquake.errors import InputError
 from railquake.inputs._toml import dumps, read_toml
 from railquake.inputs.units import shown
 from railquake.study.table import distinct
+from railquake.time_step import TimeStep
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -187,9 +189,9 @@ class ResultsFolder:
         path = self.parts / f"{uuid.uuid4().hex}.parquet"
         try:
             _replace(path, partial(write_parquet, table))
-            if source.time_step() is not None and self.time_step() is None:
-                text = (source.path / TIME_STEP_FILE).read_text(encoding="utf-8")
-                self.note_time_step(json.loads(text))
+            choice = source.time_step()
+            if choice is not None:
+                self.note_time_step(choice)
         except OSError as error:
             raise InputError(f"--out {self.path}: cannot be written: {_reason(error)}") from None
 
@@ -265,8 +267,8 @@ class ResultsFolder:
             if names == self.names():
                 return table
 
-    def time_step(self) -> float | None:
-        """The time step that was chosen for the study, s.
+    def time_step(self) -> TimeStep | None:
+        """The time step that was chosen for the study.
 
         Raises
         ------
@@ -275,7 +277,13 @@ class ResultsFolder:
         """
         file = self.path / TIME_STEP_FILE
         try:
-            return float(json.loads(file.read_text(encoding="utf-8"))["dt_s"])
+            found = json.loads(file.read_text(encoding="utf-8"))
+            return TimeStep(
+                int(found["halvings"]),
+                float(found["error"]),
+                float(found["tolerance"]),
+                int(found["tried"]),
+            )
         except FileNotFoundError:
             return None
         except (OSError, ValueError, KeyError, TypeError):
@@ -283,10 +291,10 @@ class ResultsFolder:
                 f"{file}: is damaged; delete the folder and run the study again"
             ) from None
 
-    def note_time_step(self, facts: Mapping[str, Any]) -> float:
+    def note_time_step(self, choice: TimeStep) -> TimeStep:
         """Note the time step that was chosen; what holds: another shard may have been faster."""
         file = self.path / TIME_STEP_FILE
-        text = json.dumps(dict(facts), indent=2) + "\n"
+        text = json.dumps({**asdict(choice), "text": choice.text}, indent=2) + "\n"
         draft = file.with_name(f".{file.name}.{uuid.uuid4().hex[:8]}.tmp")
         try:
             _write_text(draft, text)

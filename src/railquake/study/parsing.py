@@ -107,8 +107,8 @@ def _value(known: Input, value: Any, folder: Path, where: str) -> Any:
     if isinstance(value, Path):
         value = str(value)
     value = known.in_si(value, where)
-    if known.path in _FILES and isinstance(value, str):
-        needs_ending = not known.path.endswith((".file", ".record", ".vertical"))
+    if known.field_path in _FILES and isinstance(value, str):
+        needs_ending = not known.field_path.endswith((".file", ".record", ".vertical"))
         if not needs_ending or is_path(value):
             return str((folder / value).absolute())
     return value

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.physics.kernel import lockstep_target
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["Work", "hardest", "kernel_key", "parse_shard", "plan"]
 
 STEPS_A_BATCH = 40e6  # about eight seconds of one processor
-LEAST_BATCH, LARGEST_BATCH = 16, 256  # runs
+LEAST_BATCH, LARGEST_BATCH = 16, 256  # runs; every processor's number of lanes divides them
 BLOCK = 32  # assemblies of car, support and track that are worked on at a time
 MOST_HARDEST = 12  # runs that choose the time step
 
@@ -90,13 +91,14 @@ def plan(design: Design, rows: range, done: set[tuple[int, str | None]], workers
     block = {row: place[number] // BLOCK for _, number, row in found}
     found.sort(key=lambda f: (f[0], block[f[2]], -steps[f[2]], f[1], f[2]))
     batches: list[tuple[int, ...]] = []
-    share = max(8, math.ceil(len(found) / max(4 * workers, 1) / 8) * 8)
+    lanes = lockstep_target().lanes
+    share = lanes * math.ceil(len(found) / max(4 * workers, 1) / lanes)
     here: list[int] = []
     former: tuple[int, int] | None = None
     for kernel, _, row in found:
         size = int(min(max(STEPS_A_BATCH / steps[row], LEAST_BATCH), LARGEST_BATCH, share))
         group = (kernel, block[row])
-        if here and (group != former or len(here) >= size // 8 * 8):
+        if here and (group != former or len(here) >= size // lanes * lanes):
             batches.append(tuple(here))
             here = []
         here.append(row)
@@ -115,7 +117,7 @@ def _steps(scenario: Scenario) -> float:
         duration = float(motion.synthetic["duration"])
     else:
         duration = scenario.ground_motion().duration
-    return max(1.0, duration / scenario.solver.dt)
+    return max(1.0, duration / scenario.solver.step)
 
 
 def kernel_key(scenario: Scenario) -> tuple[Any, ...]:

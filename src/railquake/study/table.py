@@ -29,7 +29,7 @@ MEASURES = (
     "off_rail_time_s", "detached_time_s", "uplifts", "flange_contact_first_s", "uplift_first_s",
     "uplift_last_end_s", "onset_first_s", "flange_over_first_s", "derailed_s", "overturned_s",
     "energy_residual", "contact_energy_residual", "energy_dissipated_j", "steps", "steps_per_s",
-    "wall_s", "dt_s", "dt_critical_s", "contact", "versions",
+    "wall_s", "dt_s", "dt_error", "dt_critical_s", "contact", "versions",
 )  # fmt: skip
 """Keys of `assess`, columns of the table."""
 TIMINGS = ("wall_s", "steps_per_s")

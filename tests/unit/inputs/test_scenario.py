@@ -334,3 +334,17 @@ def test_schema_names_every_section_and_no_key_is_required():
     assert '"required"' not in json.dumps(schema)
     assert "bart-berkeley" in schema["$defs"]["Support"]["properties"]["preset"]["examples"]
     assert schema["$defs"]["Solver"]["additionalProperties"] is False
+
+
+def test_a_changed_file_changes_the_hash_and_the_motion(tmp_path):
+    record = tmp_path / "motion.csv"
+    case = scenario(record=record, units="g")
+
+    def written(peak):
+        record.write_text("".join(f"{0.01 * k:.2f},{peak * (k == 5)}\n" for k in range(20)))
+        return case.content_hash(), case.ground_motion().pga
+
+    first = written(0.1)
+    assert written(0.125)[1] == pytest.approx(1.25 * first[1])
+    assert written(0.125)[0] != first[0]
+    assert written(0.1) == first

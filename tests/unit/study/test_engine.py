@@ -1,11 +1,8 @@
 """Running a study: every run is a row, whatever becomes of it."""
 
-import sys
 import threading
 import time
-import types
 from concurrent.futures import ThreadPoolExecutor
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +13,7 @@ from railquake.study import batches, engine, open_results
 from railquake.study.design import Design
 from railquake.study.plan import plan
 from railquake.study.table import MEASURES
+from railquake.time_step import TimeStep
 from study_files import BASE, MODELS, small, tables, untimed
 
 
@@ -192,13 +190,11 @@ def chooser(monkeypatch):
     """A chooser of time steps that notes what it was given."""
     given = []
 
-    def choose_time_step(scenarios, tolerance=0.01, threads=None):
+    def choose_time_step(scenarios, tolerance=None, *, threads=None):
         given.extend(scenarios)
-        return SimpleNamespace(dt=2e-5, error=0.004, text="time step 2e-05 s: 0.4 % at most")
+        return TimeStep(halvings=2, error=0.004, tolerance=0.01, tried=len(scenarios))
 
-    module = types.ModuleType("railquake.time_step")
-    module.choose_time_step = choose_time_step
-    monkeypatch.setitem(sys.modules, "railquake.time_step", module)
+    monkeypatch.setattr(engine, "choose_time_step", choose_time_step)
     return given
 
 
@@ -207,15 +203,25 @@ def test_a_time_step_left_open_is_chosen_once_from_the_hardest_runs(chooser, tmp
     data["base"] = {**BASE, "solver": {"dt": "auto"}}
     said = []
     table = study(data).run(tmp_path, notify=said.append)
-    assert set(table["dt_s"]) == {2e-5}
-    assert said == ["time step 2e-05 s: 0.4 % at most"]
+    choice = TimeStep(halvings=2, error=0.004, tolerance=0.01, tried=3)
+    assert said == [choice.text]
     hardest = {(s.support.kind, getattr(s.support, "coupled", None)) for s in chooser}
     assert hardest == {("pier", True), ("pier", False), ("at-grade", None)}
     assert {s.motion.scale for s in chooser} == {3.0}
+    assert table["dt_s"].tolist()[:3] == [choice.of(s) for s in sorted_as_models(chooser)]
+    assert set(table["dt_error"]) == {0.004}
     chooser.clear()
     assert study(data).run(tmp_path).equals(table)
     assert not chooser
-    assert open_results(tmp_path).scenario(0).solver.dt == 2e-5
+    opened = open_results(tmp_path)
+    assert [opened.scenario(row).solver.dt for row in range(12)] == table["dt_s"].tolist()
+
+
+def sorted_as_models(scenarios):
+    order = [("pier", True), ("pier", False), ("at-grade", None)]
+    return sorted(
+        scenarios, key=lambda s: order.index((s.support.kind, getattr(s.support, "coupled", None)))
+    )
 
 
 def test_an_axis_of_motions_keeps_memory_bounded(monkeypatch):
