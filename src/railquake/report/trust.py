@@ -121,15 +121,16 @@ def _halved(context: Context) -> list[Any]:
 
     rows = _telling(context)
     context.notify(f"running {len(rows)} rows again with half the time step ...")
-    scenarios = []
+    scenarios, used = [], context.table.set_index("row")
     try:
         for row in rows:
             scenario = context.results.scenario(row)
-            scenarios.append(scenario.with_changes({"solver.dt": 0.5 * scenario.solver.dt}))
+            scenarios.append(
+                scenario.with_changes({"solver.dt": 0.5 * float(used.at[row, "dt_s"])})
+            )
         found = dict(simulate_many(scenarios))
     except InputError as error:
         return [Text(f"Its error cannot be measured: {error}.", "note")]
-    table = context.table.set_index("row")
     lines = []
     for k, row in enumerate(rows):
         if found[k].get("status") not in ("safe", "onset", "derailed"):
@@ -137,8 +138,8 @@ def _halved(context: Context) -> list[Any]:
         (words,) = context.words(context.table[context.table["row"] == row])
         changes = []
         for name in CHECKED:
-            fine, used = found[k][name], float(table.at[row, name])
-            changes.append(_per_cent(used / fine - 1.0) if fine else "–")
+            fine, coarse = found[k][name], float(used.at[row, name])
+            changes.append(_per_cent(coarse / fine - 1.0) if fine else "–")
         lines.append((words, *changes, context.command(row)))
     if not lines:
         return []
