@@ -105,12 +105,8 @@ def _time_step(context: Context) -> list[Any]:
     critical = done["dt_critical_s"].min()
     text = f"Time step: {said}; the smallest critical step of all runs is {critical:.3g} s."
     facts = context.time_step_facts
-    if "largest_relative_change" in facts:
-        text += (
-            f" It was chosen by the program: {facts.get('text', '')} Largest relative change of "
-            f"PBD, PBV and uplift against a finer step: "
-            f"{100.0 * float(facts['largest_relative_change']):.2g} %."
-        )
+    if facts.get("text"):
+        text += f" It was chosen by the program for this study: {facts['text']}."
         return [Text(text)]
     return [Text(text), *_halved(context)]
 

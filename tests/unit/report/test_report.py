@@ -95,11 +95,12 @@ def test_trust_shows_the_step_s_measured_error_versions_and_hashes(report):
 
 
 def test_a_chosen_time_step_is_told_with_its_error(folder):
-    facts = {"dt_s": 3e-5, "largest_relative_change": 0.004, "text": "dt = 3e-05 s."}
+    facts = {"halvings": 0, "error": 0.004, "tolerance": 0.01, "tried": 8}
+    facts["text"] = "estimated error 0.4 % over 8 scenarios tried"
     (folder / "time_step.json").write_text(json.dumps(facts))
     section = trust.section(Context(open_results(folder), str(folder), print))
     (said,) = [block.text for block in section.blocks if isinstance(block, Text)]
-    assert "chosen by the program" in said and "0.4 %" in said
+    assert "chosen by the program" in said and facts["text"] in said
 
 
 def test_out_names_the_page_and_another_report_replaces_the_first(capsys, folder, tmp_path):
