@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from railquake.assembly import assemble as assemble
     from railquake.assessment import assess as assess
     from railquake.errors import InputError as InputError
+    from railquake.fragility import Fragility as Fragility
     from railquake.inputs.motion import GroundMotion as GroundMotion
     from railquake.inputs.motion import read_motion as read_motion
     from railquake.inputs.scenario import Scenario as Scenario
@@ -28,6 +29,7 @@ __version__ = "0.1.0"
 
 # Loaded when first asked for: `import railquake` stays quick.
 _HOMES = {
+    "Fragility": "railquake.fragility",
     "GroundMotion": "railquake.inputs.motion",
     "InputError": "railquake.errors",
     "Response": "railquake.response",
