@@ -96,7 +96,7 @@ class DeviceLanes:
     def load(self, lane: int, system: System) -> System:
         """Give a lane a system; returns it with what it shares with other lanes."""
         if lane >= len(self.states):
-            self._widen(min(MOST_LANES, max(2 * len(self.states), lane + 1)))
+            self._widen(min(self.most, max(2 * len(self.states), lane + 1)))
         motion = self.motions.take(system)
         self.taken[lane] = motion
         self.states[lane] = system.start[:, 0]

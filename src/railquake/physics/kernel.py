@@ -9,6 +9,7 @@ runs in the interpreter, where a debugger and a coverage tool can see it.
 from __future__ import annotations
 
 import hashlib
+import importlib
 import importlib.util
 import os
 import sys
@@ -313,14 +314,16 @@ def _on_device(function: Law) -> Law:
 def _device_functions() -> dict[str, Law]:
     """What takes the place of `march.thread_number`, `march.own_rows`, `elementary.floor_of`."""
     jit = _import_cuda().jit
-    functions = {"thread_number": jit(device=True, forceinline=True)(_thread_number)}
-    if not _is_simulator():
-        functions["floor_of"] = jit(device=True, forceinline=True)(_floor_of)
-        functions["bits_of"] = jit(device=True, forceinline=True)(_bits_of)
-        functions["float_of"] = jit(device=True, forceinline=True)(_float_of)
+    if _is_simulator():
+        return {"thread_number": jit(_thread_number, device=True)}
+    return {
+        "thread_number": jit(_thread_number, device=True, forceinline=True),
+        "floor_of": jit(_floor_of, device=True, forceinline=True),
+        "bits_of": jit(_bits_of, device=True, forceinline=True),
+        "float_of": jit(_float_of, device=True, forceinline=True),
         # a thread's memory must be made in the kernel itself
-        functions["own_rows"] = jit(device=True, inline="always")(_own_rows)
-    return functions
+        "own_rows": jit(_own_rows, device=True, inline="always"),
+    }
 
 
 def _thread_number() -> Any:
@@ -394,7 +397,7 @@ def ptx(kernel: Kernel, arguments: tuple[Any, ...], capability: tuple[int, int])
     from types import SimpleNamespace
     from unittest.mock import patch
 
-    from numba import typeof
+    typeof = importlib.import_module("numba").typeof
 
     signature = tuple(typeof(argument) for argument in arguments)
     function = kernel.call.dispatcher.py_func  # type: ignore[attr-defined]
