@@ -3,8 +3,18 @@
 A module a group of commands; each registers with `application.app` when it is imported here.
 """
 
-from railquake.cli import bench, probe, select, single, study, validate
+from railquake.cli import bench, calibrate, probe, select, single, study, validate
 from railquake.cli.application import app
 from railquake.cli.status import main
 
-__all__ = ["app", "bench", "main", "probe", "select", "single", "study", "validate"]
+__all__ = [
+    "app",
+    "bench",
+    "calibrate",
+    "main",
+    "probe",
+    "select",
+    "single",
+    "study",
+    "validate",
+]

@@ -41,6 +41,14 @@ def study(
         str | None,
         typer.Option("--scheduler", help="Dask scheduler whose workers run it: tcp://HOST:PORT."),
     ] = None,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Change a value of the file: --set base.solver.dt=auto",
+        ),
+    ] = None,
 ) -> None:
     """Run a study: a base case, a suite of motions and axes.
 
@@ -52,7 +60,12 @@ def study(
     from railquake.study import load_study
 
     run_with_progress(
-        load_study(file), out, jobs=jobs, records=records, shard=shard, scheduler=scheduler
+        load_study(file, changes or ()),
+        out,
+        jobs=jobs,
+        records=records,
+        shard=shard,
+        scheduler=scheduler,
     )
 
 

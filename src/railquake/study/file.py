@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
 from railquake.inputs._model import did_you_mean, toml_type
-from railquake.inputs._toml import is_path, merged, read_toml
+from railquake.inputs._toml import is_path, merged, read_toml, with_overrides
 from railquake.inputs.presets import KINDS, with_absolute_paths
-from railquake.inputs.scenario import Scenario
+from railquake.inputs.scenario import Overrides, Scenario
 from railquake.inputs.units import shown
 from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
@@ -283,13 +283,15 @@ class Study:
         )
 
 
-def load_study(path: str | Path) -> Study:
+def load_study(path: str | Path, overrides: Overrides = ()) -> Study:
     """Read a study file.
 
     Parameters
     ----------
     path : str or Path
         TOML file; relative paths in it start from its folder.
+    overrides : iterable of str, or mapping
+        Values to change, by their paths in the file: ``["base.solver.dt=auto"]``.
 
     Returns
     -------
@@ -300,7 +302,8 @@ def load_study(path: str | Path) -> Study:
     InputError
         Naming the file and the line or field, what was found and what to write.
     """
-    return Study.from_dict(read_toml(path), Path(path).absolute().parent, where=str(path))
+    tables = with_overrides(read_toml(path), overrides, f"{path}: --set")
+    return Study.from_dict(tables, Path(path).absolute().parent, where=str(path))
 
 
 def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:

@@ -27,6 +27,7 @@ COMPARISONS: tuple[str, ...] = (
     # classical cases with closed forms
     # the whole, written a second time
     # the hinge of the case study against a fibre section
+    "column_fit",
 )
 
 
