@@ -320,6 +320,8 @@ def _run(
         batch = batches[key]
         while batch.is_full and not stop.is_set():
             yield from batch.advance()
+        if stop.is_set():
+            return
         batch.load(_Job(index, system, begin, choice))
     for batch in batches.values():
         yield from batch.drained(stop)

@@ -30,6 +30,7 @@ __all__ = [
     "bind",
     "cache_folder",
     "copy_to_device",
+    "device_name",
     "device_stream",
     "lockstep_target",
     "missing_for_cuda",
@@ -368,6 +369,14 @@ def missing_for_cuda() -> str | None:
     if _import_cuda().is_available():
         return None
     return "no NVIDIA GPU answers here, or its driver is missing; run on the CPU instead"
+
+
+def device_name() -> str:
+    """The GPU's name."""
+    if _is_simulator():
+        return "simulator"
+    name = _import_cuda().get_current_device().name
+    return name.decode() if isinstance(name, bytes) else str(name)
 
 
 def device_stream() -> Any:
