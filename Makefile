@@ -7,12 +7,12 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input
 SHELL  := /bin/bash
 
-.PHONY: help demo test lint format types layers docs bench validate constraints clean
+.PHONY: help demo test lint format types layers docs bench bench-gpu validate constraints clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
-	@echo "make demo | test | lint | format | types | layers | docs | bench | validate | clean"
+	@echo "make demo | test | lint | format | types | layers | docs | bench | bench-gpu | validate | clean"
 
 demo: $(VENV)/.ready-run
 	$(BIN)/railquake demo --out $(DEMO)
@@ -43,6 +43,10 @@ bench: $(VENV)/.ready-bench
 	$(BIN)/python benchmarks/shortcuts.py $(RECORDS)
 	$(BIN)/python benchmarks/lockstep_memory.py
 
+# On a machine with an NVIDIA GPU; elsewhere it says that nothing was measured.
+bench-gpu: $(VENV)/.ready-gpu
+	$(BIN)/railquake bench --device cuda
+
 # Every comparison, and the documentation's page of them; the reference data lie in ../shared.
 validate: $(VENV)/.ready-fem
 	$(BIN)/railquake validate --page docs/validation.md
@@ -53,8 +57,9 @@ $(VENV)/.ready-dev:   EXTRAS := [dev]
 $(VENV)/.ready-docs:  EXTRAS := [docs]
 $(VENV)/.ready-bench: EXTRAS := [bench]
 $(VENV)/.ready-fem:   EXTRAS := [fem]
+$(VENV)/.ready-gpu:   EXTRAS := [gpu]
 $(VENV)/.ready-run $(VENV)/.ready-dev $(VENV)/.ready-docs $(VENV)/.ready-bench \
-		$(VENV)/.ready-fem: $(VENV)/.created pyproject.toml constraints.txt
+		$(VENV)/.ready-fem $(VENV)/.ready-gpu: $(VENV)/.created pyproject.toml constraints.txt
 	@echo "Installing railquake$(EXTRAS) into $(VENV) (a minute or so, once)"
 	@$(PIP) -c constraints.txt -e ".$(EXTRAS)"
 	@touch $@

@@ -1,8 +1,9 @@
-"""Many runs: scenarios advance in lockstep, some to a batch, on threads.
+"""Many runs: scenarios advance in lockstep, some to a batch, on threads or on a GPU.
 
-Each batch holds as many lanes as `kernel.lockstep_target` has.  A lane whose scenario has ended is
-given the next one, so records of different lengths do not wait for each other.  Scenarios that need
-another kernel, another contact table or another number of steps a frame go to another batch.
+On the CPU a batch holds as many lanes as `kernel.lockstep_target` has, on a GPU thousands (see
+`device`).  A lane whose scenario has ended is given the next one, so records of different lengths
+do not wait for each other.  Scenarios that need another kernel, another contact table or another
+number of steps a frame go to another batch.
 """
 
 from __future__ import annotations
@@ -11,14 +12,15 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
 from railquake.assembly import System, assemble
 from railquake.assessment import assess
+from railquake.device import DeviceLanes, require_device
 from railquake.errors import InputError
 from railquake.physics import state
 from railquake.physics.energy import audit
@@ -35,6 +37,7 @@ __all__ = ["choose_time_step", "simulate_many"]
 Row = dict[str, Any]
 REFRESH_STEPS = 10  # of the hinge's degradation
 REFRESH_TIME = 1e-4  # s; with longer time steps it is refreshed after fewer of them
+GPU_THREADS = 2
 CHUNK = 500  # frames that a batch runs without looking up
 OPEN_BATCHES = 16  # of one thread
 
@@ -45,6 +48,7 @@ def simulate_many(
     threads: int | None = None,
     refresh_steps: int = REFRESH_STEPS,
     hinge_solve: Literal["linearised", "newton"] = "linearised",
+    device: Literal["cpu", "cuda"] = "cpu",
 ) -> Iterator[tuple[int, Row]]:
     """Run many scenarios; any may differ from any other.
 
@@ -53,7 +57,7 @@ def simulate_many(
     scenarios : iterable of Scenario
         Drawn as they are needed, so that memory stays bounded.
     threads : int, optional
-        All processors by default.
+        All processors by default; two for a GPU, so that one prepares while the other waits.
     refresh_steps : int
         Steps between two evaluations of the hinge's degradation, and between two looks at flanges
         far from their rails; in between the degradation is extrapolated.  With steps above 1e-5 s
@@ -61,6 +65,9 @@ def simulate_many(
     hinge_solve : {"linearised", "newton"}
         One consistently linearised solve of the hinge a step; or each scenario run by `simulate`,
         which iterates where the scenario says so, at a fifth of the speed.
+    device : {"cpu", "cuda"}
+        ``cuda`` runs thousands of scenarios at once on an NVIDIA GPU; it pays from some thousands.
+        What is left to `simulate` runs on the CPU all the same.
 
     Yields
     ------
@@ -73,7 +80,8 @@ def simulate_many(
     Raises
     ------
     InputError
-        If ``threads`` or ``refresh_steps`` is not positive, or ``hinge_solve`` unknown.
+        If ``threads`` or ``refresh_steps`` is not positive, ``hinge_solve`` or ``device`` unknown,
+        or there is no GPU to be used.
 
     Notes
     -----
@@ -81,15 +89,26 @@ def simulate_many(
     its degradation extrapolated between evaluations.  The grid method of contact is run by
     `simulate` itself.
     """
-    count = (os.cpu_count() or 1) if threads is None else threads
+    if device not in ("cpu", "cuda"):
+        raise InputError(f'device: must be cpu or cuda, found "{device}"')
+    count = threads
+    if count is None:
+        count = GPU_THREADS if device == "cuda" else os.cpu_count() or 1
     if count < 1:
         raise InputError(f"threads: must be at least 1, found {count}")
     if refresh_steps < 1:
         raise InputError(f"refresh_steps: must be at least 1, found {refresh_steps}")
     if hinge_solve not in ("linearised", "newton"):
         raise InputError(f'hinge_solve: must be linearised or newton, found "{hinge_solve}"')
+    if device == "cuda":
+        require_device()
+    make_lanes: MakeLanes = DeviceLanes if device == "cuda" else _Abreast
     singly = hinge_solve == "newton"
-    return _results(enumerate(scenarios), count, refresh_steps, singly)
+    return _results(
+        enumerate(scenarios),
+        count,
+        lambda drawn, stop: _run(drawn, refresh_steps, singly, stop, make_lanes),
+    )
 
 
 def choose_time_step(
@@ -126,7 +145,9 @@ def choose_time_step(
 
 
 def _results(
-    scenarios: Iterator[tuple[int, Scenario]], threads: int, refresh_steps: int, singly: bool
+    scenarios: Iterator[tuple[int, Scenario]],
+    threads: int,
+    run: Callable[[Iterator[tuple[int, Scenario]], threading.Event], Iterator[tuple[int, Row]]],
 ) -> Iterator[tuple[int, Row]]:
     found: queue.Queue[tuple[int, Row] | BaseException | None] = queue.Queue(maxsize=256)
     stop = threading.Event()
@@ -146,7 +167,7 @@ def _results(
 
     def work() -> None:
         try:
-            for item in _run(iter(draw, None), refresh_steps, singly, stop):
+            for item in run(iter(draw, None), stop):
                 put(item)
         except BaseException as error:
             put(error)
@@ -172,11 +193,110 @@ def _results(
             worker.join()
 
 
+class Lanes(Protocol):
+    """Where the systems of a batch march, each in a lane of its own."""
+
+    most: int
+
+    @property
+    def is_full(self) -> bool:
+        """Whether another system must wait although a lane is free."""
+
+    def load(self, lane: int, system: System) -> System:
+        """Give an idle lane a system; returns it, sharing with others what is the same."""
+
+    def release(self, lane: int) -> None:
+        """Leave a lane idle."""
+
+    def march(self, left: dict[int, int]) -> None:
+        """Run the lanes for a while, none for more than the frames that are ``left`` to it."""
+
+    def frames_done(self, lane: int) -> int:
+        """Frames that a lane has behind it."""
+
+    def state(self, lane: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """State of a lane, shape (state rows, 1)."""
+
+
+MakeLanes = Callable[["System", int], Lanes]  # for systems like this one, and its refresh steps
+
+
+class _Abreast:
+    """Lanes in lockstep on the CPU; see `Lanes`."""
+
+    is_full = False
+
+    def __init__(self, system: System, refresh_steps: int) -> None:
+        lanes = self.most = lockstep_target().lanes
+        self.refresh_steps = refresh_steps
+        self.kernel = system.kernel(lockstep_target())
+        self.geometry = system.geometry
+        self.idle = system.start.copy()
+        self.idle[state.ON_TRACK] = 0.0
+        self.states = np.repeat(self.idle, lanes, axis=1)
+        self.constants = np.repeat(system.constants, lanes, axis=1)
+        self.slot = 0  # rows of the drive kept for each lane
+        self.drive = np.zeros((2, system.drive.shape[1]))  # the last two rows stay at rest
+        self.first = np.zeros(lanes, dtype=np.int64)
+        self.stride = np.zeros(lanes, dtype=np.int64)
+        self.done = np.zeros(lanes, dtype=np.int64)
+
+    def load(self, lane: int, system: System) -> System:
+        rows = len(system.drive)
+        if rows > self.slot:
+            self._widen(rows)
+        place = lane * self.slot
+        self.drive[place : place + rows] = system.drive
+        self.first[lane], self.stride[lane], self.done[lane] = place, 1, 0
+        self.states[:, lane] = system.start[:, 0]
+        self.constants[:, lane] = system.constants[:, 0]
+        return system
+
+    def _widen(self, rows: int) -> None:
+        """Make room for a longer motion."""
+        lanes = self.most
+        wider = np.zeros((lanes * rows + 2, self.drive.shape[1]))
+        for lane in range(lanes):
+            old, new = lane * self.slot, lane * rows
+            wider[new : new + self.slot] = self.drive[old : old + self.slot]
+            is_idle = self.stride[lane] == 0
+            self.first[lane] = lanes * rows if is_idle else new + self.done[lane]
+        self.slot, self.drive = rows, wider
+
+    def release(self, lane: int) -> None:
+        self.states[:, lane] = self.idle[:, 0]
+        self.first[lane], self.stride[lane] = self.most * self.slot, 0
+
+    def march(self, left: dict[int, int]) -> None:
+        frames = min(CHUNK, *left.values()) if left else 0
+        self.kernel.call(
+            self.states,
+            self.constants,
+            self.geometry,
+            self.drive,
+            self.first,
+            self.stride,
+            self.done,
+            frames,
+            self.most,
+            self.refresh_steps,
+        )
+        self.first += frames * self.stride
+        self.done += frames
+
+    def frames_done(self, lane: int) -> int:
+        return int(self.done[lane])
+
+    def state(self, lane: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+        return self.states[:, lane : lane + 1]
+
+
 def _run(
     scenarios: Iterator[tuple[int, Scenario]],
     refresh_steps: int,
     singly: bool,
     stop: threading.Event,
+    make_lanes: MakeLanes = _Abreast,
 ) -> Iterator[tuple[int, Row]]:
     """One thread's share."""
     batches: dict[Any, _Batch] = {}
@@ -196,10 +316,12 @@ def _run(
             if len(batches) >= OPEN_BATCHES:
                 oldest = batches.pop(next(iter(batches)))
                 yield from oldest.drained(stop)
-            batches[key] = _Batch(system, refresh_steps)
+            batches[key] = _Batch(system, refresh_steps, make_lanes)
         batch = batches[key]
         while batch.is_full and not stop.is_set():
             yield from batch.advance()
+        if stop.is_set():
+            return
         batch.load(_Job(index, system, begin, choice))
     for batch in batches.values():
         yield from batch.drained(stop)
@@ -230,110 +352,64 @@ class _Job:
 
 
 class _Batch:
-    """Lanes that advance together."""
+    """Runs that advance together."""
 
-    def __init__(self, system: System, refresh_steps: int) -> None:
-        lanes = lockstep_target().lanes
-        self.refresh_steps = max(1, min(refresh_steps, round(REFRESH_TIME / system.dt)))
-        self.kernel = system.kernel(lockstep_target())
-        self.geometry = system.geometry
-        self.idle = system.start.copy()
-        self.idle[state.ON_TRACK] = 0.0
-        self.state = np.repeat(self.idle, lanes, axis=1)
-        self.constants = np.repeat(system.constants, lanes, axis=1)
-        self.jobs: list[_Job | None] = [None] * lanes
-        self.slot = 0  # rows of the drive kept for each lane
-        self.drive = np.zeros((2, system.drive.shape[1]))  # the last two rows stay at rest
-        self.first = np.zeros(lanes, dtype=np.int64)
-        self.stride = np.zeros(lanes, dtype=np.int64)
-        self.done = np.zeros(lanes, dtype=np.int64)
+    def __init__(
+        self, system: System, refresh_steps: int, make_lanes: MakeLanes = _Abreast
+    ) -> None:
+        shortest = max(1, min(refresh_steps, round(REFRESH_TIME / system.dt)))
+        self.lanes = make_lanes(system, shortest)
+        self.free = list(range(self.lanes.most))[::-1]
+        self.jobs: dict[int, _Job] = {}  # by lane
 
     @property
     def is_full(self) -> bool:
         """Whether no lane is free."""
-        return None not in self.jobs
+        return not self.free or self.lanes.is_full
 
     def load(self, job: _Job) -> None:
         """Give a free lane a scenario."""
-        lane = self.jobs.index(None)
-        system = job.system
-        rows = len(system.drive)
-        if rows > self.slot:
-            self._widen(rows)
-        place = lane * self.slot
-        self.drive[place : place + rows] = system.drive
-        self.first[lane], self.stride[lane], self.done[lane] = place, 1, 0
-        self.state[:, lane] = system.start[:, 0]
-        self.constants[:, lane] = system.constants[:, 0]
-        self.jobs[lane] = job
-
-    def _widen(self, rows: int) -> None:
-        """Make room for a longer motion."""
-        lanes = len(self.jobs)
-        wider = np.zeros((lanes * rows + 2, self.drive.shape[1]))
-        for lane, job in enumerate(self.jobs):
-            old, new = lane * self.slot, lane * rows
-            wider[new : new + self.slot] = self.drive[old : old + self.slot]
-            self.first[lane] = new + self.done[lane] if job else lanes * rows
-        self.slot, self.drive = rows, wider
+        lane = self.free.pop()
+        self.jobs[lane] = replace(job, system=self.lanes.load(lane, job.system))
 
     def advance(self) -> list[tuple[int, Row]]:
         """Run until a lane ends, or a while; the rows of what has ended."""
-        active = [lane for lane, job in enumerate(self.jobs) if job is not None]
-        left = [self._job(lane).system.frames - int(self.done[lane]) for lane in active]
-        frames = min(CHUNK, *left) if left else 0
         begin = time.perf_counter()
-        self.kernel.call(
-            self.state,
-            self.constants,
-            self.geometry,
-            self.drive,
-            self.first,
-            self.stride,
-            self.done,
-            frames,
-            len(self.jobs),
-            self.refresh_steps,
+        self.lanes.march(
+            {
+                lane: job.system.frames - self.lanes.frames_done(lane)
+                for lane, job in self.jobs.items()
+            }
         )
-        share = (time.perf_counter() - begin) / max(len(active), 1)
-        self.first += frames * self.stride
-        self.done += frames
+        share = (time.perf_counter() - begin) / max(len(self.jobs), 1)
         rows = []
-        for lane in active:
-            job = self._job(lane)
+        for lane, job in list(self.jobs.items()):
             job.march_s += share
-            diverged = self.state[state.DIVERGED, lane] > 0.0
-            if diverged or self.done[lane] >= job.system.frames:
-                rows.append((job.index, self._row(job, lane)))
-                self._release(lane)
+            state_now = self.lanes.state(lane)
+            done = self.lanes.frames_done(lane)
+            if state_now[state.DIVERGED, 0] > 0.0 or done >= job.system.frames:
+                rows.append((job.index, _row(job, state_now.copy(), done)))
+                del self.jobs[lane]
+                self.lanes.release(lane)
+                self.free.append(lane)
         return rows
 
     def drained(self, stop: threading.Event) -> Iterator[tuple[int, Row]]:
         """Run all lanes to their ends."""
-        while any(job is not None for job in self.jobs) and not stop.is_set():
+        while self.jobs and not stop.is_set():
             yield from self.advance()
 
-    def _job(self, lane: int) -> _Job:
-        job = self.jobs[lane]
-        assert job is not None  # asked of active lanes only
-        return job
 
-    def _row(self, job: _Job, lane: int) -> Row:
-        end = self.state[:, lane : lane + 1].copy()
-        system = job.system
-        return assess(
-            Response(
-                system=system,
-                end=end,
-                frames=np.empty((int(self.done[lane]) + 1, 0)),
-                audit=audit(system.start, end, system.constants),
-                wall_s=time.perf_counter() - job.begin,
-                march_s=job.march_s,
-                time_step=job.choice,
-            )
+def _row(job: _Job, end: np.ndarray[Any, np.dtype[np.float64]], frames: int) -> Row:
+    system = job.system
+    return assess(
+        Response(
+            system=system,
+            end=end,
+            frames=np.empty((frames + 1, 0)),
+            audit=audit(system.start, end, system.constants),
+            wall_s=time.perf_counter() - job.begin,
+            march_s=job.march_s,
+            time_step=job.choice,
         )
-
-    def _release(self, lane: int) -> None:
-        self.jobs[lane] = None
-        self.state[:, lane] = self.idle[:, 0]
-        self.first[lane], self.stride[lane] = len(self.jobs) * self.slot, 0
+    )

@@ -34,7 +34,7 @@ from railquake.physics import (
     state,
 )
 from railquake.physics.contact import calibrated_hysteresis, printed_hysteresis
-from railquake.physics.kernel import PYTHON, SCALAR, Kernel, Target, bind
+from railquake.physics.kernel import CUDA, PYTHON, SCALAR, Kernel, Target, bind
 from railquake.physics.profiles import Geometry, axis_constants
 from railquake.physics.vehicle import kernel_order, lateral_block
 
@@ -124,12 +124,16 @@ class System:
         return _sizes(self.vehicle)["BLOCK"]
 
     def kernel(self, target: Target = SCALAR) -> Kernel:
-        """Bind `march.march`, or for several lanes `march.march_abreast`, with the chosen laws."""
+        """Bind `march.march` with the chosen laws, or one of its kin.
+
+        For several lanes that is `march.march_abreast`, for `CUDA` `march.march_on_device`.
+        """
         laws = dict(self.laws)
         sizes = {**_sizes(self.vehicle), "LANES": target.lanes}
         if target.lanes == 1:
             # what a patch does not need is not computed; many abreast must do it all the same
             laws[march.press] = march.press_closed
+        if target.lanes == 1 and target is not CUDA:
             laws[march.comes_near] = march.may_be_near
             return bind(march.march, target, laws, sizes)
         laws[elementary.exponential] = elementary.exponential_polynomial
@@ -137,6 +141,9 @@ class System:
         laws[boucwen.degradation_now] = boucwen.degradation_extrapolated
         laws[boucwen.pinched_stiffness_now] = boucwen.pinched_stiffness_kept
         laws.setdefault(boucwen.advance, boucwen.advance_linearised)
+        if target is CUDA:
+            rows = {"STATE_ROWS": len(self.start), "CONSTANT_ROWS": len(self.constants)}
+            return bind(march.march_on_device, target, laws, {**sizes, **rows})
         return bind(march.march_abreast, target, laws, sizes)
 
 

@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from railquake.cli.application import app
 from railquake.cli.shared import Json, print_json
+from railquake.errors import InputError
+
+Device = Annotated[
+    str, typer.Option("--device", help="cpu; or cuda for a GPU alone, beside a sample on the CPU.")
+]
 
 
 @app.command()
-def bench(as_json: Json = False) -> None:
+def bench(as_json: Json = False, device: Device = "cpu") -> None:
     """Measure how fast it is on this machine, beside OpenSees where that is installed.
 
     Example: railquake bench --json
     """
+    if device not in ("cpu", "cuda"):
+        raise InputError(f'device: must be cpu or cuda, found "{device}"')
+    if device == "cuda":
+        from railquake.bench_gpu import print_bench_gpu, run_bench_gpu
+
+        gpu = run_bench_gpu()
+        if as_json:
+            print_json(gpu)
+        else:
+            print_bench_gpu(gpu)
+        return
     from railquake.bench import print_bench, run_bench
 
     row = run_bench()

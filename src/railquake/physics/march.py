@@ -36,12 +36,15 @@ from railquake.physics.vehicle import (
     push_wheelset,
 )
 
-__all__ = ["LANES", "march", "march_abreast", "step"]
+__all__ = ["LANES", "march", "march_abreast", "march_on_device", "step"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 FAR = 1e-3  # m; no flange comes so much nearer between two looks, see `comes_near`
-LANES = 1  # scenarios abreast; bound when a kernel is made
+# bound when a kernel is made
+LANES = 1  # scenarios abreast
+STATE_ROWS = 1  # of a thread's own state and constants, see `march_on_device`
+CONSTANT_ROWS = 1
 
 
 def step(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
@@ -848,3 +851,76 @@ def march_abreast(
             if S[state.LEAVING, lane] > 0.0:
                 release(S, Q, lane)
     state_in[:, :] = S
+
+
+def thread_number() -> int:
+    """Number of this thread among all that run at once; bound to the device's own."""
+    return 0
+
+
+def own_rows(rows: int) -> Array:
+    """Memory that belongs to this thread alone; bound to the device's own."""
+    return np.empty((rows, 1))
+
+
+def march_on_device(
+    states: Array,
+    constants: Array,
+    geometry: Geometry,
+    drive: Array,
+    first: Array,
+    done: Array,
+    frames: Array,
+    refresh: int,
+) -> None:
+    """Run some frames of many scenarios, each by a thread of its own.
+
+    A lane that has diverged stops at the end of that frame.
+
+    Parameters
+    ----------
+    states : array, shape (lanes, state rows)
+        State of each lane, in and out; a lane's rows lie together, for the host's sake.
+    constants : array, shape (lanes, constant rows)
+    geometry : Geometry
+    drive : array, shape (any, 2 or 8)
+        Drives of all lanes, one after the other; lanes may share one.
+    first : array of int, shape (lanes,)
+        Row of ``drive`` at which each lane's motion begins.
+    done : array of int, shape (lanes,)
+        Frames that each lane has behind it, in and out.
+    frames : array of int, shape (lanes,)
+        Frames to run now; 0 for an idle lane.
+    refresh : int
+        As in `march_abreast`.
+    """
+    column = thread_number()
+    count = frames[column] if column < len(frames) else 0
+    if count > 0:
+        S = own_rows(STATE_ROWS)
+        Q = own_rows(CONSTANT_ROWS)
+        for row in range(STATE_ROWS):
+            S[row, 0] = states[column, row]
+        for row in range(CONSTANT_ROWS):
+            Q[row, 0] = constants[column, row]
+        steps = int(Q[constant.FRAME_STEPS, 0])
+        frame = done[column]
+        end = frame + count
+        while frame < end:
+            begin_frame(S, Q, drive, first[column] + frame, 0)
+            for n in range(steps):
+                if n % refresh == 0:
+                    refresh_hinge(S, Q, 0)
+                    look_again(S, 0)
+                step(S, Q, geometry, LANES)
+            frame += 1
+            S[state.TIME, 0] = frame * steps * Q[constant.DT, 0]
+            filter_forces(S, Q, steps, 0)
+            watch(S, Q, 0)
+            if S[state.LEAVING, 0] > 0.0:
+                release(S, Q, 0)
+            if S[state.DIVERGED, 0] > 0.0:
+                end = frame
+        done[column] = frame
+        for row in range(STATE_ROWS):
+            states[column, row] = S[row, 0]
