@@ -9,6 +9,8 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from railquake.version import __version__
+
 if TYPE_CHECKING:
     from railquake.assembly import assemble as assemble
     from railquake.assessment import assess as assess
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
     from railquake.simulation import simulate as simulate
     from railquake.study import Study as Study
     from railquake.study import load_study as load_study
-
-__version__ = "0.1.0"
 
 # Loaded when first asked for: `import railquake` stays quick.
 _HOMES = {

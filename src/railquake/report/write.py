@@ -129,7 +129,7 @@ def _subtitle(context: Context) -> str:
 
 
 def _footer() -> str:
-    from railquake import __version__
+    from railquake.version import __version__
 
     return (
         f"Made by railquake {__version__} on {datetime.now(UTC):%Y-%m-%d}. The model is that of "
