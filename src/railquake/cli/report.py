@@ -9,6 +9,8 @@ import typer
 
 from railquake.cli.application import app
 
+__all__ = ["report_with_notes"]
+
 
 @app.command()
 def report(
@@ -33,6 +35,11 @@ def report(
 
     Example: railquake report study
     """
+    report_with_notes(folder, out, hazard)
+
+
+def report_with_notes(folder: Path, out: Path | None = None, hazard: str | None = None) -> None:
+    """Write a report, and say on standard error what takes long."""
     from railquake.report import write_report
 
     def say(text: str) -> None:
