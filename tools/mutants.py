@@ -42,7 +42,7 @@ PHYSICS = ROOT / "src" / "railquake" / "physics"
 # half of which an uncompiled run never enters.
 LEFT_OUT = ("__init__", "constant", "state", "kernel")
 # quick tests that need no compiled run
-TESTS = ("tests/unit/physics", "tests/unit/assembly", "tests/verification/test_plain_python.py")
+TESTS = ("tests/unit/physics", "tests/unit/assembly", "tests/verification/test_jolts.py")
 MEMORY = 6 * 2**30  # bytes of address space beyond which a mutant is ended
 
 
