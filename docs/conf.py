@@ -26,8 +26,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
 ]
-# what other pages include; the first is made by benchmarks/creep_deviation.py
-exclude_patterns = ["_build", "theory/creep-deviation.md", "reference/channels.md"]
+exclude_patterns = ["_build", "reference/channels.md"]  # the latter is included by other pages
 templates_path = ["_templates"]
 
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -57,15 +58,20 @@ def validate(
         if not as_json:
             typer.echo(f"{text_table([report])}\n")
 
-    reports = run(names, folder, show)
-    if page is not None:
-        write_page(reports, page)
+    def begin(name: str) -> None:
+        if sys.stderr.isatty():
+            typer.echo(f"railquake: {name} ...", err=True)
+
+    reports = run(names, folder, show, begin)
+    undrawn = write_page(reports, page) if page is not None else []
+    green = is_green(reports) and not undrawn
     if as_json:
-        green = is_green(reports)
         print_json({"green": green, "comparisons": [report.as_dict() for report in reports]})
     else:
         typer.echo(summary(reports))
         if page is not None:
             typer.echo(f"page and plots: {page}")
-    if not is_green(reports):
+    for complaint in undrawn:
+        typer.echo(f"railquake: {complaint}", err=True)
+    if not green:
         raise typer.Exit(NOT_GREEN)

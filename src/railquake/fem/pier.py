@@ -25,7 +25,7 @@ MATERIAL_TOLERANCE = 1e-12  # absolute, of z
 
 @dataclass(frozen=True)
 class PierHistory:
-    """What the pier did, relative to the ground, after every step; arrays of shape (steps,).
+    """What the pier did, relative to the ground; arrays of one length, a value each sample.
 
     Attributes
     ----------
@@ -99,7 +99,14 @@ def _prepare(ops: Any, pier: Pier, acceleration: Array, dt: float, gravity: floa
 
 
 def opensees_pier(
-    pier: Pier, acceleration: Array, dt: float, step: float, steps: int, *, gravity: float = 1.0
+    pier: Pier,
+    acceleration: Array,
+    dt: float,
+    step: float,
+    steps: int,
+    *,
+    gravity: float = 1.0,
+    every: int = 1,
 ) -> PierHistory:
     """Run the pier alone in OpenSees.
 
@@ -113,10 +120,14 @@ def opensees_pier(
         Interval of the record and time step, s.
     steps : int
     gravity : float
+    every : int
+        Steps from one sample of the history to the next; the last steps that make no whole sample
+        are left out.
 
     Returns
     -------
     PierHistory
+        The first sample is that after ``every`` steps.
 
     Raises
     ------
@@ -127,11 +138,11 @@ def opensees_pier(
     """
     ops = opensees()
     _prepare(ops, pier, acceleration, dt, gravity)
-    found = np.empty((steps, 4))
+    found = np.empty((steps // every, 4))
     try:
-        for k in range(steps):
-            if ops.analyze(1, step):
-                raise RuntimeError(f"OpenSees did not converge in step {k + 1} of {steps}")
+        for k in range(len(found)):
+            if ops.analyze(every, step):
+                raise RuntimeError(f"OpenSees did not converge before {every * (k + 1) * step:g} s")
             moment = ops.eleResponse(HINGE, "material", 1, "stress")
             rotation = ops.nodeDisp(2, 3)
             found[k] = ops.nodeDisp(TOP, 1), rotation, ops.nodeDisp(TOP, 3), moment

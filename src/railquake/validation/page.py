@@ -16,8 +16,8 @@ __all__ = ["check_page", "page_text", "summary", "text_table", "write_page"]
 
 PICTURES = Path("images") / "validation"  # beside the page
 HEAD = ("quantity", "reference", "ours", "difference", "tolerance", "verdict")
-# Differences below this part of the values hang on the compiler and are not printed.
-FLOOR = 1e-9
+# Differences below this part of the tolerance hang on the compiler and are not printed.
+FLOOR = 1e-3
 
 INTRODUCTION = """\
 # Validation
@@ -26,8 +26,8 @@ Every part of railquake is held here against something that it did not write: pu
 other programs, closed forms. The page is written by the program itself:
 
 ```
-make validate                     # in a checkout, with the folder of reference data beside it
-railquake validate --data DIR     # anywhere; pip install railquake[fem] brings OpenSees
+make validate                  # in a checkout; the reference data lie in ../shared
+railquake validate --data DIR  # anywhere; pip install railquake[fem] brings OpenSees
 ```
 
 The command ends with status 0 only if everything ran and agrees. A tolerance is stated before the
@@ -49,21 +49,26 @@ def _with_unit(value: float | None, unit: str) -> str:
 
 def _share(value: float) -> str:
     """A relative number in per cent, or as a power of ten where that is shorter."""
-    if value == 0.0 or value >= 1e-6 or not math.isfinite(value):
+    if value == 0.0 or value >= 1e-5 or not math.isfinite(value):
         return f"{100.0 * value:.2g} %"
-    return f"{value:.1g}"
+    return _small(value)
+
+
+def _small(value: float) -> str:
+    mantissa, exponent = f"{value:.0e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
 
 
 def _difference(result: Result) -> str:
     if result.kind == "at most":
         return "–"
+    floor = FLOOR * result.tolerance
     if result.kind == "absolute":
-        scale = max(abs(result.reference or 0.0), abs(result.ours))
-        if result.difference < FLOOR * scale:
-            return _with_unit(0.0, result.unit)
+        if result.difference < floor:
+            return f"below {_with_unit(floor, result.unit)}"
         return f"{result.difference:.2g} {result.unit}".rstrip()
-    if result.difference < FLOOR:
-        return f"< {FLOOR:.0e}"
+    if result.difference < floor:
+        return f"below {_share(floor)}"
     suffix = " of peak" if result.kind == "of peak" else ""
     return _share(result.difference) + suffix
 
@@ -110,20 +115,31 @@ def text_table(reports: Iterable[Report]) -> str:
 
 
 def summary(reports: Sequence[Report]) -> str:
-    """One line: how many agree, and which do not."""
-    counted = [
-        f"{sum(report.verdict == verdict for report in reports)} {verdict}"
-        for verdict in ("agrees", "outside", "skipped", "failed")
-        if verdict == "agrees" or any(report.verdict == verdict for report in reports)
-    ]
+    """One line: how many agree, and what became of the others."""
     colour = "green" if is_green(reports) else "not green"
-    return f"{colour}: of {len(reports)} comparisons {', '.join(counted)}"
+    agreeing = sum(report.verdict == "agrees" for report in reports)
+    others = [
+        f"{count} {verdict}"
+        for verdict in ("outside", "skipped", "failed")
+        if (count := sum(report.verdict == verdict for report in reports))
+    ]
+    return ", ".join([f"{colour}: {agreeing} of {len(reports)} comparisons agree", *others])
 
 
 def _markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     lines += ["| " + " | ".join(cell.replace("|", r"\|") for cell in row) + " |" for row in rows]
     return lines
+
+
+def _unbroken(cells: Sequence[str]) -> tuple[str, ...]:
+    """The row with each number, its sign, exponent and unit kept on one line."""
+    return cells[0], *(
+        cell.replace(" ", "\N{NO-BREAK SPACE}")
+        .replace("\N{NO-BREAK SPACE}of\N{NO-BREAK SPACE}", " of ")
+        .replace("-", "\N{MINUS SIGN}")
+        for cell in cells[1:]
+    )
 
 
 def _section(report: Report, drawn: Sequence[tuple[str, str]]) -> list[str]:
@@ -140,7 +156,8 @@ def _section(report: Report, drawn: Sequence[tuple[str, str]]) -> list[str]:
     lines += [f"**Why this tolerance.** {comparison.WHY.strip()}", ""]
     if report.outcome is None or report.error:
         return [*lines, f"**{report.verdict.capitalize()}.** {_reason(report)}", ""]
-    lines += [*_markdown_table(HEAD, (_cells(result) for result in report.outcome.results)), ""]
+    rows = (_unbroken(_cells(result)) for result in report.outcome.results)
+    lines += [*_markdown_table(HEAD, rows), ""]
     if report.outcome.note:
         lines += [report.outcome.note.strip(), ""]
     for file, caption in drawn:
@@ -168,7 +185,7 @@ def page_text(reports: Sequence[Report], drawn: dict[str, list[tuple[str, str]]]
     return "\n".join(lines).rstrip() + "\n"
 
 
-def write_page(reports: Sequence[Report], path: Path) -> list[Path]:
+def write_page(reports: Sequence[Report], path: Path) -> list[str]:
     """Write the page, and its pictures in a folder ``images/validation`` beside it.
 
     All are written under temporary names and moved when the last is drawn.  Pictures of
@@ -182,8 +199,8 @@ def write_page(reports: Sequence[Report], path: Path) -> list[Path]:
 
     Returns
     -------
-    list of Path
-        What was written, the page first.
+    list of str
+        A line for each plot that could not be drawn; the page does without it.
 
     Raises
     ------
@@ -193,29 +210,40 @@ def write_page(reports: Sequence[Report], path: Path) -> list[Path]:
     check_page(path)
     folder = path.parent / PICTURES
     with tempfile.TemporaryDirectory() as temporary:
-        drawn: dict[str, list[tuple[str, str]]] = {}
-        files = []
-        for report in reports:
-            for picture in report.outcome.pictures if report.outcome else ():
-                file = f"{report.name}-{picture.name}.png"
-                picture.draw(Path(temporary) / file)
-                files.append(file)
-                drawn.setdefault(report.name, []).append(
-                    ((PICTURES / file).as_posix(), picture.caption)
-                )
+        drawn, complaints = _draw(reports, Path(temporary))
         part = path.with_name(f".{path.name}.part")
         try:
             part.write_text(page_text(reports, drawn), encoding="utf-8")
-            if files:
-                folder.mkdir(parents=True, exist_ok=True)
-            for file in files:
-                shutil.move(Path(temporary) / file, folder / file)
+            folder.mkdir(parents=True, exist_ok=True)
+            for file in Path(temporary).iterdir():
+                shutil.move(file, folder / file.name)
             part.replace(path)
         except OSError as error:
             raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
         finally:
             part.unlink(missing_ok=True)
-    return [path, *(folder / file for file in files)]
+    return complaints
+
+
+def _draw(
+    reports: Sequence[Report], folder: Path
+) -> tuple[dict[str, list[tuple[str, str]]], list[str]]:
+    """Draw all pictures; links and captions by comparison, and what could not be drawn."""
+    drawn: dict[str, list[tuple[str, str]]] = {}
+    complaints = []
+    for report in reports:
+        for picture in report.outcome.pictures if report.outcome else ():
+            file = f"{report.name}-{picture.name}.png"
+            try:
+                picture.draw(folder / file)
+            except Exception as error:
+                (folder / file).unlink(missing_ok=True)
+                reason = " ".join(f"{type(error).__name__}: {error}".split())
+                complaints.append(f"{report.name}: plot {picture.name} failed: {reason}")
+                continue
+            link = (PICTURES / file).as_posix()
+            drawn.setdefault(report.name, []).append((link, picture.caption))
+    return drawn, complaints
 
 
 def check_page(path: Path) -> None:

@@ -13,6 +13,17 @@ __all__ = ["COMPARISONS", "load"]
 COMPARISONS: tuple[str, ...] = (
     # the parts against published numbers and other programs
     "vehicle_modes",
+    "hinge_steps",
+    "pier_steps",
+    "pier_elastic",
+    "pier_hinge",
+    "pier_pinched",
+    "contact_approach",
+    "contact_place",
+    "contact_lobes",
+    "normal_law",
+    "kalker_coefficients",
+    "creep_laws",
     # classical cases with closed forms
     # the whole, written a second time
     # the hinge of the case study against a fibre section

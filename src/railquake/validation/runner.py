@@ -95,7 +95,10 @@ def chosen(only: Iterable[str] = ()) -> tuple[str, ...]:
 
 
 def run(
-    names: Iterable[str], data: Path | None, report: Callable[[Report], None] | None = None
+    names: Iterable[str],
+    data: Path | None,
+    report: Callable[[Report], None] | None = None,
+    begin: Callable[[str], None] | None = None,
 ) -> tuple[Report, ...]:
     """Run comparisons one after another.
 
@@ -107,6 +110,8 @@ def run(
         Folder of reference data.
     report : callable, optional
         Called with each report when it is there.
+    begin : callable, optional
+        Called with the name of each comparison before it runs.
 
     Returns
     -------
@@ -114,6 +119,8 @@ def run(
     """
     reports = []
     for name in names:
+        if begin is not None:
+            begin(name)
         reports.append(run_one(name, registry.load(name), data))
         if report is not None:
             report(reports[-1])
