@@ -62,7 +62,9 @@ def test_contact_loses_no_more_than_its_own_equations_do(name):
     lost = energy["impact"] + energy["creep"]
     expected = -work - energy["hertz"] - lost + energy["spin"]
     assert expected > 0.0
-    assert run(name).audit.contact_residual == pytest.approx(expected, abs=0.03 * lost)
+    # the track feels the forces of the step before: at 2e-5 s, 2 % of their work on it
+    lag = 0.02 * abs(energy["contact_track"])
+    assert run(name).audit.contact_residual == pytest.approx(expected, abs=lag)
 
 
 def test_a_mirrored_jolt_gives_the_mirrored_end():

@@ -19,7 +19,7 @@ WHAT = """The car `bart`, its suspension stiffened tenfold and well damped so th
 level ground; 0.6 m/s² grow smoothly within 2 s and stay for 1.5 s more. Low-passed force and wheel loads at
 the end, and by the springs the car's travel."""
 WHY = """The wheels creep aside by some tenths of a millimetre meanwhile, 0.05 % of their distance; what
-is left of the swing is below a tenth of a per cent."""
+is left of the swing is about a tenth of a per cent."""
 
 GROUND = 0.6
 STIFFER = 10.0
