@@ -98,7 +98,7 @@ class Contact:
         self.modulus = pair.youngs_modulus / (2.0 * (1.0 - pair.poisson_ratio**2))
         self.shear = pair.youngs_modulus / (2.0 * (1.0 + pair.poisson_ratio))
         # ellipses by the ratio k of their semi-axes (Johnson 1985, section 4.2)
-        k = 1.0 - np.geomspace(1.0 - 1e-3, 1e-10, 4000)
+        k = np.concatenate([np.geomspace(1e-3, 0.5, 3000), 1.0 - np.geomspace(0.49, 1e-10, 3000)])
         first, second = ellipk(1.0 - k**2), ellipe(1.0 - k**2)
         self.curvatures = (first - second) / (second / k**2 - first)  # smaller over larger
         self.ellipse = (
