@@ -235,10 +235,8 @@ def profile(items: list[pytest.Item], seconds: float) -> dict[str, Any]:
     times: dict[str, float] = {}
     calls: dict[str, list[str]] = {}
     dropped: dict[str, str] = {}
-    by_file: dict[str, set[str]] = defaultdict(set)
     for item in items:
         watch = Watch()
-        # a fixture of the module is set up by its first test alone, but all of them need it
         sys.setprofile(watch)
         signal.setitimer(signal.ITIMER_REAL, seconds)
         begin = time.perf_counter()
@@ -253,7 +251,6 @@ def profile(items: list[pytest.Item], seconds: float) -> dict[str, Any]:
         if result == "passed":
             times[item.nodeid] = time.perf_counter() - begin
             calls[item.nodeid] = sorted(watch.seen)
-            by_file[str(item.path)] |= watch.seen
         else:
             dropped[item.nodeid] = result
     return {"times": times, "calls": calls, "dropped": dropped}
@@ -298,7 +295,7 @@ def main() -> int:
     parser.add_argument("--module", action="append", choices=modules, help="only these modules")
     parser.add_argument("--function", action="append", help="only these functions")
     parser.add_argument("--every", type=int, default=1, help="only every n-th mutant: a sample")
-    parser.add_argument("--seconds", type=float, default=4.0, help="longest test that is used")
+    parser.add_argument("--seconds", type=float, default=8.0, help="longest test that is used")
     parser.add_argument("--least", type=float, default=85.0, help="share to be killed, percent")
     parser.add_argument("--out", type=Path, help="JSON file of all mutants and their fates")
     parser.add_argument("--tests", action="append", help="only these tests")
