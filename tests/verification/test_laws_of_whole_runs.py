@@ -96,7 +96,9 @@ def test_response_scales_in_the_linear_range(speeds, pier, share):
     for name in ("bridge_displacement_m", "top_rotation_rad", "car_lateral_m", "car_vertical_m"):
         rest = whole.channel(name)[0]
         full, scaled = whole.channel(name) - rest, part.channel(name) - rest
-        assert np.abs(scaled - share * full).max() <= 0.01 * share * np.abs(full).max() + 1e-12, name
+        assert np.abs(scaled - share * full).max() <= 0.01 * share * np.abs(full).max() + 1e-12, (
+            name
+        )
 
 
 @FEW

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     from railquake.assembly import System
@@ -40,7 +41,7 @@ def pair_of(height: float, **values: Any) -> dict[str, Any]:
     return {"preset": "bart", "rolling_radius": height, **values}
 
 
-def motion(step: float, acceleration: Sequence[float]) -> GroundMotion:
+def motion(step: float, acceleration: ArrayLike) -> GroundMotion:
     """Ground acceleration, m/s2, at steps of so many seconds."""
     from railquake.inputs.motion import GroundMotion
 

@@ -11,14 +11,14 @@ from railquake.validation.bodies import GRAVITY, block, disturbed, motion, pair_
 from railquake.validation.comparison import Outcome, Picture, relative
 
 TITLE = "A bouncing wheel"
-SOURCE = """Hunt and Crossley (1975): with $x = \\delta'/\\delta'_0$ the motion during a free impact
-gives $\\alpha(1+e) = \\ln\\frac{1+\\alpha}{1-\\alpha e}$ for the rebound $e$, whatever mass, stiffness and
-speed; it is solved here. As printed $\\alpha = \\frac32(1-c_r)$; as calibrated it is chosen so that
-$e = c_r$."""
-WHAT = """A block on its two wheels falls on the rails at 1 m/s, weightless (the ground falls with
-$g$) and without friction; the speed at which it leaves them over that at which it met them."""
-WHY = """The contact lasts some hundred steps of 5e-6 s, and its onset and loss are noticed within one
-of them, when next to no force acts: a tenth of a per cent is ample."""
+SOURCE = """Hunt and Crossley (1975): with $x = \\delta'/\\delta'_0$ the motion during a free
+impact gives $\\alpha(1+e) = \\ln\\frac{1+\\alpha}{1-\\alpha e}$ for the rebound $e$, whatever
+mass, stiffness and speed; it is solved here. As printed $\\alpha = \\frac32(1-c_r)$; as
+calibrated it is chosen so that $e = c_r$."""
+WHAT = """A block on its two wheels falls on the rails at 1 m/s, weightless (the ground falls
+with $g$) and without friction; the speed at which it leaves them over that at which it met them."""
+WHY = """The contact lasts some hundred steps of 5e-6 s, and its onset and loss are noticed
+within one of them, when next to no force acts: a tenth of a per cent is ample."""
 
 TOLERANCE = 1e-3
 CASES = (
@@ -73,9 +73,7 @@ def bounce(law: str, restitution: float) -> tuple[np.ndarray, np.ndarray]:
         "history_step": 1e-4,
     }
     system = rq.assemble(rq.scenario(**case))
-    falling = disturbed(
-        system, {"wheelset": (0.0, -4e-4, 0.0)}, {"wheelset": (0.0, SPEED, 0.0)}
-    )
+    falling = disturbed(system, {"wheelset": (0.0, -4e-4, 0.0)}, {"wheelset": (0.0, SPEED, 0.0)})
     response = rq.simulate(falling, target=PYTHON)
     speed = np.diff(response.channel("wheelset_vertical_m")) / 1e-4
     return response.times[2:], speed[1:]

@@ -11,17 +11,18 @@ from railquake.validation.bodies import block, disturbed, motion, pair_of
 from railquake.validation.comparison import Outcome, Picture, relative
 
 TITLE = "A wheel on its flange: Nadal's limit"
-SOURCE = """Nadal (1908): a wheel that slides down on a flange of angle $\\gamma$ has
-$Y/Q = (\\tan\\gamma-\\mu)/(1+\\mu\\tan\\gamma)$, one that climbs
-$Y/Q = (\\tan\\gamma+\\mu)/(1-\\mu\\tan\\gamma)$; the flank of the drawn wheel has 64.55°."""
-WHAT = """A standing block, raised on its right-hand flange's flank, is let go downwards and pushed
-upwards at 0.3 m/s, the ground holding it against the rail; lateral over vertical force of that wheel
-while the flank touches, for two coefficients of friction."""
-WHY = """The flank is straight, so the angle is exact but for the wheelset's roll, which is measured and
-taken off. Friction is full from a slip of some mm/s."""
+SOURCE = """Nadal (1908): a wheel that slides down on a flange of angle $\\gamma$ has $Y/Q =
+(\\tan\\gamma-\\mu)/(1+\\mu\\tan\\gamma)$, one that climbs $Y/Q =
+(\\tan\\gamma+\\mu)/(1-\\mu\\tan\\gamma)$; the flank of the drawn wheel has 64.55°."""
+WHAT = """A standing block, raised on its right-hand flange's flank, is let go downwards and
+pushed upwards at 0.3 m/s, the ground holding it against the rail; lateral over vertical force of
+that wheel while the flank touches, for two coefficients of friction."""
+WHY = """The flank is straight, so the angle is exact but for the wheelset's roll, which is
+measured and taken off. Friction is full from a slip of some mm/s."""
 
 FLANK = np.degrees(np.arctan2(0.6471 - 0.4278, 1.7424 - 1.6380))
 TOLERANCE = 1e-3
+RADIUS = 0.392  # m
 CASES = ((0.15, -1.0), (0.15, 1.0), (0.3, -1.0), (0.3, 1.0))
 
 
@@ -51,7 +52,7 @@ def compare(data: Path | None) -> Outcome:
         ]  # fmt: skip
         curves(path, "friction", "Y/Q", ours, [(mu, limit, "") for limit, _ in limits])
 
-    caption = "Lateral over vertical force on the flange: runs (ends of the lines), closed forms (dashed)."
+    caption = "Lateral over vertical force on the flange: runs (solid), closed forms (dashed)."
     return Outcome(tuple(results), (Picture("limit", caption, draw),))
 
 
@@ -61,8 +62,8 @@ def slide(friction: float, way: float) -> tuple[float, float]:
     from railquake.physics.kernel import PYTHON
 
     case: dict[str, Any] = {
-        "vehicle": block(4000.0, 2000.0, 0.392),
-        "wheelrail": pair_of("15.4291 in", friction=friction, restitution=0.0),
+        "vehicle": block(4000.0, 2000.0, RADIUS),
+        "wheelrail": pair_of(RADIUS, friction=friction, restitution=0.0),
         "support": "at-grade",
         # the block is left behind to the right, against the rail
         "motion": motion(1e-3, [-40.0] * 5),
@@ -81,6 +82,8 @@ def slide(friction: float, way: float) -> tuple[float, float]:
         response = rq.simulate(pushed, target=PYTHON)
         rise += float(response.channel("penetration_right_flange_m")[1]) - 1e-4
     within = slice(20, 36)
-    ratio = response.channel("lateral_force_n")[within] / response.channel("wheel_load_right_n")[within]
+    ratio = (
+        response.channel("lateral_force_n")[within] / response.channel("wheel_load_right_n")[within]
+    )
     roll = response.channel("relative_roll_rad")[within]
     return float(slope - roll.mean()), float(ratio.mean())

@@ -11,18 +11,21 @@ from railquake.validation.bodies import GRAVITY, block, disturbed, motion, pair_
 from railquake.validation.comparison import Outcome, Picture, relative
 
 TITLE = "A block that rocks on two rails"
-SOURCE = """Housner (1963), *The behavior of inverted pendulum structures during earthquakes*: a block of
-half-width $b$ and height of the centre of gravity $h$ lifts at $a = g\\,b/h$; about an edge
-$I_0\\ddot\\theta = -mgR\\sin(\\alpha-\\theta)$, whence the free rocking period by one quadrature; for a
-slender block $\\frac4p\\cosh^{-1}\\frac1{1-\\theta_0/\\alpha}$, $p^2 = mgR/I_0$. The impact on the other rail with
-restitution $e$, no slip, the other edge free: $\\omega'/\\omega = (A-b(1+2e))/(A+b)$,
-$A = (I+mh^2)/(mb)$, which for $e = 0$ is Housner's $1-\\frac{mR^2}{I_0}(1-\\cos2\\alpha)$."""
-WHAT = """A tall block on wheels with a flat tread, on rails with a narrow head (10 mm), standing, with
-much friction. The ground's acceleration grows slowly until a wheel lifts; the block is let go from a
-tilt of 0.12 $\\alpha$, and the time to the upright is a quarter of the period; the roll rate just
-before and just after the first impact gives its ratio, for two calibrated restitutions."""
-WHY = """The pivot moves with the head's rounding, by up to 10 mm times the tilt, and creeps sideways.
-During the impact the other wheel's contact spring unloads, and creep lets the feet slip a little."""
+SOURCE = """Housner (1963), *The behavior of inverted pendulum structures during earthquakes*: a
+block of half-width $b$ and height of the centre of gravity $h$ lifts at $a = g\\,b/h$; about an
+edge $I_0\\ddot\\theta = -mgR\\sin(\\alpha-\\theta)$, whence the free rocking period by one
+quadrature; for a slender block $\\frac4p\\cosh^{-1}\\frac1{1-\\theta_0/\\alpha}$, $p^2 =
+mgR/I_0$. The impact on the other rail with restitution $e$, no slip, the other edge free:
+$\\omega'/\\omega = (A-b(1+2e))/(A+b)$, $A = (I+mh^2)/(mb)$, which for $e = 0$ is Housner's
+$1-\\frac{mR^2}{I_0}(1-\\cos2\\alpha)$."""
+WHAT = """A tall block on wheels with a flat tread, on rails with a narrow head (10 mm),
+standing, with much friction. The ground's acceleration grows slowly until a wheel lifts; the
+block is let go from a tilt of 0.12 $\\alpha$, and the time to the upright is a quarter of the
+period; the roll rate just before and just after the first impact gives its ratio, for two
+calibrated restitutions."""
+WHY = """The pivot moves with the head's rounding, by up to 10 mm times the tilt, and creeps
+sideways. During the impact the other wheel's contact spring unloads, and creep lets the feet
+slip a little."""
 
 MASS, INERTIA, HEIGHT = 4000.0, 10000.0, 2.5
 HEAD = 0.010  # m, radius of the rail's head
@@ -132,7 +135,11 @@ def rock(restitution: float, seconds: float = 1.6, **changes: Any) -> tuple[np.n
     steps = int(seconds / 0.01) + 1
     system = rq.assemble(
         rq.scenario(
-            **case(motion=motion(0.01, [0.0] * steps), wheelrail={"restitution": restitution}, **changes)
+            **case(
+                motion=motion(0.01, [0.0] * steps),
+                wheelrail={"restitution": restitution},
+                **changes,
+            )
         )
     )
     # turned about the right-hand contact: right side down, the centre moves right and up

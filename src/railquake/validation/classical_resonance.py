@@ -12,14 +12,15 @@ from railquake.validation.classical_free_vibration import FOOT, pier_matrices
 from railquake.validation.comparison import Outcome, Picture, relative
 
 TITLE = "Resonance: steady amplitudes under harmonic ground motion"
-SOURCE = """The steady answer to $\\ddot u_g = a\\,\\sin\\Omega t$ is
-$|(K-\\Omega^2M+i\\Omega C)^{-1}M\\,t|\\,a$; for a single mode at resonance, $\\Gamma\\phi a/(2\\zeta\\omega^2)$.
-Solved by NumPy with matrices of its own."""
+SOURCE = """The steady answer to $\\ddot u_g = a\\,\\sin\\Omega t$ is $|(K-\\Omega^2M+i\\Omega
+C)^{-1}M\\,t|\\,a$; for a single mode at resonance, $\\Gamma\\phi a/(2\\zeta\\omega^2)$. Solved
+by NumPy with matrices of its own."""
 WHAT = """The pier `bart-berkeley` with an elastic hinge, decoupled, 5 % damping, under a sine of
-0.1 m/s² at 0.5, 0.9, 1 and 1.5 of its first frequency; amplitudes of displacement and of the hinge's
-rotation over the last five periods."""
-WHY = """After 25 periods the start's transient, which decays by 0.73 in each, is down to 0.04 %. The
-ground's sine is linear between samples a hundredth of a period apart, which lowers it by 0.03 %."""
+0.1 m/s² at 0.5, 0.9, 1 and 1.5 of its first frequency; amplitudes of displacement and of the
+hinge's rotation over the last five periods."""
+WHY = """After 25 periods the start's transient, which decays by 0.73 in each, is down to 0.04 %.
+The ground's sine is linear between samples a hundredth of a period apart, which lowers it by
+0.03 %."""
 
 RATIO, GROUND = 0.05, 0.1
 SHARES = (0.5, 0.9, 1.0, 1.5)
@@ -55,10 +56,11 @@ def compare(data: Path | None) -> Outcome:
     def draw(path: Path) -> None:
         from railquake.validation.drawing import curves
 
-        curves(path, "ground's frequency over the first one", "amplitude [mm]",
-               [(np.array(SHARES), np.array(found), "o")], [(shares, curve, "closed form")])  # fmt: skip
+        ours = [(np.array(SHARES), np.array(found), "runs")]
+        closed = [(shares, curve, "closed form")]
+        curves(path, "ground's frequency over the first one", "amplitude [mm]", ours, closed)
 
-    caption = "Amplitude of the pier's top: runs (points) and closed form (dashed)."
+    caption = "Amplitude of the pier's top: runs (joined by lines) and closed form (dashed)."
     return Outcome(tuple(results), (Picture("amplitude", caption, draw),))
 
 

@@ -11,13 +11,14 @@ from railquake.validation.bodies import GRAVITY, block, disturbed, motion, pair_
 from railquake.validation.comparison import Outcome, Picture, relative
 
 TITLE = "A block that slides"
-SOURCE = """Coulomb: over ground that accelerates by $a > \\mu g$ a block is left behind with $a-\\mu g$,
-and pushes it by $\\mu$ times its weight."""
-WHAT = """A standing block on two cylindrical treads; the ground starts with $a$ at once. Relative
-acceleration from a parabola through 20 to 60 ms, before a flange is reached, and the lateral force
-then. Two accelerations, both directions."""
-WHY = """Friction is Kalker's creep, saturated: sliding is full from a slip of some mm/s, after the first
-milliseconds. The rails' crowns are round, and the block settles on them by some micrometres."""
+SOURCE = """Coulomb: over ground that accelerates by $a > \\mu g$ a block is left behind with
+$a-\\mu g$, and pushes it by $\\mu$ times its weight."""
+WHAT = """A standing block on two cylindrical treads; the ground starts with $a$ at once.
+Relative acceleration from a parabola through 20 to 60 ms, before a flange is reached, and the
+lateral force then. Two accelerations, both directions."""
+WHY = """Friction is Kalker's creep, saturated: sliding is full from a slip of some mm/s, after
+the first milliseconds. The rails' crowns are round, and the block settles on them by some
+micrometres."""
 
 MASS, DT = 4000.0, 2e-5
 CASES = ((0.3, 5.0), (0.3, -5.0), (0.15, 4.0))
@@ -38,7 +39,8 @@ def compare(data: Path | None) -> Outcome:
                 reference=expected, ours=float(found), tolerance=0.005,
             ),
             relative(
-                f"lateral force, {where}", "N", reference=-np.sign(ground) * friction * MASS * GRAVITY,
+                f"lateral force, {where}", "N",
+                reference=-np.sign(ground) * friction * MASS * GRAVITY,
                 ours=float(force[within].mean()), tolerance=0.002,
             ),
         ]  # fmt: skip

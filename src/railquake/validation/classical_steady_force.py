@@ -11,15 +11,15 @@ from railquake.validation.bodies import GRAVITY, motion
 from railquake.validation.comparison import Outcome, Picture, relative
 
 TITLE = "A car under a steady lateral acceleration"
-SOURCE = """D'Alembert: ground that accelerates by $a$ for long is pushed back with $\\sum m\\,a$, and the
-load that goes from one rail to the other is $\\sum m\\,a\\,h$ over the contacts' distance, bodies'
-heights $h$ over the rails. (Weights that move aside tilt no more: the suspension is linear about its
-undeformed shape.)"""
-WHAT = """The car `bart`, its suspension stiffened tenfold and well damped so that it comes to rest, on the
-level ground; 0.6 m/s² grow smoothly within 2 s and stay for 1.5 s more. Low-passed force and wheel loads at
-the end, and by the springs the car's travel."""
-WHY = """The wheels creep aside by some tenths of a millimetre meanwhile, 0.05 % of their distance; what
-is left of the swing is about a tenth of a per cent."""
+SOURCE = """D'Alembert: ground that accelerates by $a$ for long is pushed back with $\\sum
+m\\,a$, and the load that goes from one rail to the other is $\\sum m\\,a\\,h$ over the contacts'
+distance, bodies' heights $h$ over the rails. (Weights that move aside tilt no more: the
+suspension is linear about its undeformed shape.)"""
+WHAT = """The car `bart`, its suspension stiffened tenfold and well damped so that it comes to
+rest, on the level ground; 0.6 m/s² grow smoothly within 2 s and stay for 1.5 s more. Low-passed
+force and wheel loads at the end, and by the springs the car's travel."""
+WHY = """The wheels creep aside by some tenths of a millimetre meanwhile, 0.05 % of their
+distance; what is left of the swing is about a tenth of a per cent."""
 
 GROUND = 0.6
 STIFFER = 10.0
@@ -54,7 +54,7 @@ def compare(data: Path | None) -> Outcome:
     def late(name: str) -> float:
         return float(response.channel(name)[-500:].mean())
 
-    # the car on the springs below it: sway of both levels, and the tilt of the lateral force's lever
+    # the car on the springs below it: sway of both levels, and the tilt of each
     level = {s.name: s for s in response.system.scenario.vehicle.springs}
     masses = {body.name: body.mass for body in bodies}
     pull = {"primary": masses["car"] + masses["bogie"], "secondary": masses["car"]}

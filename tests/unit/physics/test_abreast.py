@@ -45,20 +45,24 @@ def bouc_wen():
 COMPARED = (
     state.U, state.THETA1, state.THETA2, state.U_V, state.Z, state.EPS, state.X_MAX, state.MOMENT,
     state.SHIFT, state.HEIGHT, state.ROLL, state.FORCE_Y, state.LOAD_LEFT, state.LOAD_RIGHT,
-    state.WORK_GROUND, state.WORK_GRAVITY, state.LOST_DASHPOTS, state.LOST_CREEP, state.HINGE_ENERGY,
+    state.WORK_GROUND, state.WORK_GRAVITY, state.LOST_DASHPOTS, state.LOST_CREEP,
+    state.HINGE_ENERGY,
     state.PEAK_U, state.PEAK_ROLL, state.PEAK_LATERAL, state.TIME, state.FLAGS,
 )  # fmt: skip
 
 
 @pytest.mark.parametrize(("refresh", "tolerance"), [(1, 2e-3), (10, 1e-2)])
 def test_each_lane_gives_what_its_single_run_gives(bouc_wen, refresh, tolerance):
-    """But for one linearised solve of the hinge a step, and pinching that is kept for some steps."""
+    """But for one linearised solve of the hinge a step, and pinching kept for some steps."""
     together = abreast(bouc_wen, refresh)
     for lane, system in enumerate(bouc_wen):
         alone = rq.simulate(system, target=PYTHON).end[:, 0]
         for row in COMPARED:
             size = max(abs(alone[row]), 1e-9)
-            assert together[row, lane] == pytest.approx(alone[row], abs=tolerance * size), (lane, row)
+            assert together[row, lane] == pytest.approx(alone[row], abs=tolerance * size), (
+                lane,
+                row,
+            )
 
 
 def test_a_lane_does_not_feel_its_neighbours(bouc_wen):
@@ -122,7 +126,9 @@ def test_kept_pinching_is_the_last_one():
     assert boucwen.pinched_stiffness_kept(7.0, 1e-3, 1e-3, 1.0, 0.4, 1e3, 2.0, 1e3) == 7.0
 
 
-@pytest.mark.parametrize("law", [boucwen.advance, boucwen.advance_linearised, boucwen.advance_elastic])
+@pytest.mark.parametrize(
+    "law", [boucwen.advance, boucwen.advance_linearised, boucwen.advance_elastic]
+)
 def test_within_a_structure_each_law_answers_what_structure_and_hinge_want(bouc_wen, law):
     """dx = free - f M holds for what they return, at a step small enough for one solve."""
     h = bouc_wen[0].scenario.support.bouc_wen
@@ -136,7 +142,9 @@ def test_within_a_structure_each_law_answers_what_structure_and_hinge_want(bouc_
     )
     assert dx == pytest.approx(free - flexibility * found, rel=1e-9)
     # and so, to the first order, by its tangent
-    assert dx == pytest.approx((free - flexibility * moment) / (1.0 + flexibility * tangent), rel=0.02)
+    assert dx == pytest.approx(
+        (free - flexibility * moment) / (1.0 + flexibility * tangent), rel=0.02
+    )
     assert largest == 4e-4
     assert law(*state_now, *UNKNOWN_DEGRADATION, 1e-3, 0.0, *parameters)[3] == pytest.approx(1.2e-3)
 
@@ -167,4 +175,6 @@ def test_an_idle_lane_stands_still(bouc_wen):
     q = one.constants.copy()
     q[constant.PIER_LOAD] = q[constant.REACTION] = 0.0
     s = abreast((replace(one, start=idle, constants=q), two, three), 5, 3)
-    assert np.all(s[state.VEHICLE : state.VEHICLE + 9, 0] == idle[state.VEHICLE : state.VEHICLE + 9, 0])
+    assert np.all(
+        s[state.VEHICLE : state.VEHICLE + 9, 0] == idle[state.VEHICLE : state.VEHICLE + 9, 0]
+    )

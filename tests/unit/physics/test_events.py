@@ -70,7 +70,14 @@ def test_uplift_of_one_side(system, patch):
 
 def test_uplifts_are_counted_and_their_end_noted(system):
     s = placed(system)
-    for time, up in ((1.0, True), (2.0, True), (3.0, False), (4.0, True), (5.0, False), (6.0, False)):
+    for time, up in (
+        (1.0, True),
+        (2.0, True),
+        (3.0, False),
+        (4.0, True),
+        (5.0, False),
+        (6.0, False),
+    ):
         now = placed(system)
         patches = slice(state.PATCH, state.PATCHES_END)
         if up:

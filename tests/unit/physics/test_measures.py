@@ -79,7 +79,9 @@ def test_filtered_forces_are_a_butterworth_of_the_frames_means(every_step, steps
         first = found.system.start[state.FILTER + row, 0]  # at rest, before the push
         expected, _ = lfilter(b, a, means, zi=lfilter_zi(b, a) * first)
         size = np.abs(raw).max()
-        assert found.channel(f"{name}_filtered_n")[1:] == pytest.approx(expected, rel=1e-9, abs=1e-9 * size)
+        assert found.channel(f"{name}_filtered_n")[1:] == pytest.approx(
+            expected, rel=1e-9, abs=1e-9 * size
+        )
 
 
 def frame_state():

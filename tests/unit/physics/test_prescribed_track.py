@@ -17,9 +17,10 @@ def polynomials(t):
 
 
 def slopes(t):
-    return np.array([
-        0.4 - 60.0 * t + 2700.0 * t**2, 0.1 + 20.0 * t - 1500.0 * t**2, -0.2 + 12.0 * t + 600.0 * t**2
-    ])  # fmt: skip
+    y = 0.4 - 60.0 * t + 2700.0 * t**2
+    z = 0.1 + 20.0 * t - 1500.0 * t**2
+    roll = -0.2 + 12.0 * t + 600.0 * t**2
+    return np.array([y, z, roll])
 
 
 STEPS, DT = 4, 2.5e-4

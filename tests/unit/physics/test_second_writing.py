@@ -141,9 +141,7 @@ def test_a_zone_that_ends_before_its_smallest_gap_keeps_its_last_point(geometry)
     last = len(geometry.wheel_y)
     first = last - 8
     gap, *_ = zone_extremum(-0.002, -0.3, first, last, geometry)
-    points = [
-        (geometry.wheel_y[i], geometry.wheel_z[i]) for i in range(first, last)
-    ]
+    points = [(geometry.wheel_y[i], geometry.wheel_z[i]) for i in range(first, last)]
     sine, cosine = math.sin(-0.3), math.cos(-0.3)
     by_hand = min(
         rail_at(
@@ -177,7 +175,9 @@ def test_nodes_of_an_axis_are_coarse_fine_coarse():
     assert axis_constants(AXIS) == pytest.approx((0.4, 1.0, 10.0, 1.0 / 0.3, 2.0, 8.0))
 
 
-@pytest.mark.parametrize("x", [-1.0, -0.99, -0.5, -0.39, -0.05, 0.0, 0.07, 0.395, 0.4, 0.65, 0.71, 1.0])
+@pytest.mark.parametrize(
+    "x", [-1.0, -0.99, -0.5, -0.39, -0.05, 0.0, 0.07, 0.395, 0.4, 0.65, 0.71, 1.0]
+)
 def test_a_place_lies_in_its_cell(x):
     nodes = axis_nodes(AXIS)
     cell, place, rate = axis_cell(x, *axis_constants(AXIS))
@@ -220,7 +220,11 @@ def test_column_and_its_damping():
 
 
 def test_newmarks_matrix():
-    m, c, k = 2.0 * np.eye(2), np.array([[3.0, 1.0], [1.0, 5.0]]), np.array([[7.0, 0.0], [0.0, 9.0]])
+    m, c, k = (
+        2.0 * np.eye(2),
+        np.array([[3.0, 1.0], [1.0, 5.0]]),
+        np.array([[7.0, 0.0], [0.0, 9.0]]),
+    )
     by_hand = np.array([[800.0 + 60.0 + 7.0, 20.0], [20.0, 800.0 + 100.0 + 9.0]])  # dt = 0.1 s
     assert newmark.effective_matrix(m, c, k, 0.1) == pytest.approx(by_hand)
 
