@@ -141,8 +141,9 @@ class Campaign:
             if number % self.options.every:
                 continue
             name = f"{mutant.module}.{mutant.function}"
-            chosen = sorted((t for t in times if name in calls[t]), key=times.__getitem__)
-            # the killers of this function's last mutants first
+            chosen = [t for t in times if name in calls[t]]
+            # the killers of this function's last mutants first, then tests of little else
+            chosen.sort(key=lambda t: (len(calls[t]), times[t]))
             recent = self.recent.setdefault(name, [])
             chosen = [*recent, *(t for t in chosen if t not in recent)]
             fate, by = "untested", ""

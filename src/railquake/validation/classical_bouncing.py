@@ -62,7 +62,7 @@ def bounce(law: str, restitution: float) -> tuple[np.ndarray, np.ndarray]:
     import railquake as rq
     from railquake.physics.kernel import PYTHON
 
-    frames = 80
+    frames = 50
     case: dict[str, Any] = {
         "vehicle": block(MASS, 1000.0, 0.4),
         "wheelrail": pair_of(0.4, friction=0.0, restitution=restitution, restitution_law=law),

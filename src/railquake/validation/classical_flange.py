@@ -50,9 +50,10 @@ def compare(data: Path | None) -> Outcome:
              np.array([r.ours for r, c in zip(results, CASES, strict=True) if c[1] == way]), name)
             for way, name in ((-1.0, "sliding down"), (1.0, "climbing"))
         ]  # fmt: skip
-        curves(path, "friction", "Y/Q", ours, [(mu, limit, "") for limit, _ in limits])
+        closed = [(mu, limit, "") for limit, _ in limits]
+        curves(path, "friction", "Y/Q", ours, closed, style="o")
 
-    caption = "Lateral over vertical force on the flange: runs (solid), closed forms (dashed)."
+    caption = "Lateral over vertical force on the flange: runs (points), closed forms (dashed)."
     return Outcome(tuple(results), (Picture("limit", caption, draw),))
 
 

@@ -149,7 +149,8 @@ def rock(restitution: float, seconds: float = 1.6, **changes: Any) -> tuple[np.n
         tilt,
     )
     response = rq.simulate(disturbed(system, {"wheelset": moved}, {}))
-    return response.times, response.channel("relative_roll_rad")
+    # the first frame is still that at rest
+    return response.times[1:], response.channel("relative_roll_rad")[1:]
 
 
 def strike(restitution: float) -> float:

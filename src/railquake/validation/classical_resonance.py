@@ -58,9 +58,11 @@ def compare(data: Path | None) -> Outcome:
 
         ours = [(np.array(SHARES), np.array(found), "runs")]
         closed = [(shares, curve, "closed form")]
-        curves(path, "ground's frequency over the first one", "amplitude [mm]", ours, closed)
+        curves(
+            path, "ground's frequency over the first one", "amplitude [mm]", ours, closed, style="o"
+        )
 
-    caption = "Amplitude of the pier's top: runs (joined by lines) and closed form (dashed)."
+    caption = "Amplitude of the pier's top: runs (points) and closed form (dashed)."
     return Outcome(tuple(results), (Picture("amplitude", caption, draw),))
 
 
