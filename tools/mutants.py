@@ -123,6 +123,8 @@ class Campaign:
         print(f"{len(times)} tests, {sum(times.values()):.0f} s when watched\n")
         for module in self.options.module:
             self.run_module(module, items, times, calls)
+            if self.options.out:
+                self.options.out.write_text(json.dumps(self.rows, indent=1), encoding="utf-8")
         return True
 
     def run_module(
@@ -326,8 +328,6 @@ def main() -> int:
         )  # fmt: skip
     finally:
         shutil.rmtree(cache, ignore_errors=True)
-    if options.out:
-        options.out.write_text(json.dumps(campaign.rows, indent=1), encoding="utf-8")
     figures, share = table(campaign.rows)
     print(figures)
     return 0 if share >= options.least else 1

@@ -54,8 +54,9 @@ COMPARED = (
 @pytest.mark.parametrize(("refresh", "tolerance"), [(1, 2e-3), (10, 1e-2)])
 def test_each_lane_gives_what_its_single_run_gives(bouc_wen, refresh, tolerance):
     """But for one linearised solve of the hinge a step, and pinching kept for some steps."""
-    together = abreast(bouc_wen, refresh)
-    for lane, system in enumerate(bouc_wen):
+    systems = [replace(system, drive=system.drive[:23]) for system in bouc_wen]  # into the flange
+    together = abreast(systems, refresh)
+    for lane, system in enumerate(systems):
         alone = rq.simulate(system, target=PYTHON).end[:, 0]
         for row in COMPARED:
             size = max(abs(alone[row]), 1e-9)

@@ -36,13 +36,13 @@ def drawn(system, seed, on_track=1.0):
     return values
 
 
-def mechanical(system, s):
+def mechanical(system, s, q=None):
     """Kinetic and elastic energy by the matrices."""
     matrices, order = system.vehicle, kernel_order(9)
     x, v = np.empty(9), np.empty(9)
     x[order] = s[state.VEHICLE : state.VEHICLE + 9, 0]
     v[order] = s[state.VEHICLE + 9 : state.VEHICLE + 18, 0]
-    q = system.constants[:, 0]
+    q = (system.constants if q is None else q)[:, 0]
     k = q[constant.K : constant.K + 6]
     column = np.array([[k[0], k[1], k[2]], [k[1], k[3], k[4]], [k[2], k[4], k[5]]])
     u, u_v = s[state.U : state.U + 3, 0], s[state.U_V : state.U_V + 3, 0]
@@ -55,11 +55,12 @@ def mechanical(system, s):
 def test_each_entry_and_both_balances(system, reaction):
     q = system.constants.copy()
     q[constant.REACTION] = reaction
+    q[constant.K : constant.K + 6, 0] = (3.0, 1.0, -2.0, 7.0, 0.5, 5.0)  # all different
     first, last = drawn(system, 1), drawn(system, 2)
     found = audit(first, last, q)
     for name, row in ROWS.items():
         assert getattr(found, name) == last[row, 0]
-    change = sum(mechanical(system, last)) - sum(mechanical(system, first))
+    change = sum(mechanical(system, last, q)) - sum(mechanical(system, first, q))
     assert (found.kinetic, found.elastic) == pytest.approx(tuple(change))
     hertz = last[state.HERTZ_ENERGY, 0] + last[state.HERTZ_LEFT, 0] - first[state.HERTZ_ENERGY, 0]
     assert found.hertz == pytest.approx(hertz)

@@ -1,5 +1,7 @@
 """What is measured during a run, from a history that holds every step."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, lfilter_zi
@@ -137,3 +139,50 @@ def test_a_filter_remembers_two_inputs_and_two_outputs():
     found = [march.low_pass(s, q, 3, x, 0) for x in drawn]
     assert found == pytest.approx(lfilter(coefficients[:3], (1.0, *coefficients[3:]), drawn))
     assert not s[state.FILTER : state.FILTER + 12].any()  # the others were left alone
+
+
+def test_every_force_has_a_filter_of_its_own():
+    """Y/Q and the lowest load from filtered forces, each with its own past."""
+    s, q = frame_state()
+    coefficients = (0.2, 0.3, 0.1, -0.5, 0.25)
+    q[constant.FILTER_B0 : constant.FILTER_A2 + 1, 0] = coefficients
+    drawn = np.random.default_rng(11).uniform(30.0, 90.0, size=(8, 5))
+    for sums in drawn:
+        s[SUMS, 0] = 2.0 * sums
+        march.filter_forces(s, q, 2.0, 0)
+    out = lfilter(coefficients[:3], (1.0, *coefficients[3:]), drawn, axis=0)
+    loads, lateral = out[:, 1:3], out[:, 3:]
+    bears = loads > 10.0  # a tenth of the static load
+    ratios = np.where(bears, np.abs(lateral) / np.maximum(loads, 10.0), 0.0)
+    assert s[state.PEAK_DERAILMENT_COEFFICIENT, 0] == pytest.approx(ratios.max())
+    assert s[state.PEAK_LATERAL_FILTERED, 0] == pytest.approx(np.abs(out[:, 0]).max())
+    assert s[state.LOWEST_LOAD, 0] == pytest.approx(min(100.0, loads.min()))
+
+
+@pytest.mark.parametrize("bearing", range(16))
+def test_a_wheel_is_off_its_rail_when_neither_tread_nor_flange_bears(bearing):
+    s = np.zeros((state.VEHICLE, 1))
+    s[state.PATCH - 4 : state.PATCHES_END + 4] = 7.0  # neighbours that are none of its business
+    touches = [bool(bearing >> patch & 1) for patch in range(4)]
+    for patch, touch in enumerate(touches):
+        row = state.PATCH + patch * state.PATCH_ROWS + state.PATCH_PENETRATION
+        s[row] = 1e-5 if touch else -1e-5
+    expected = (float(not any(touches[:2])), float(not any(touches[2:])))
+    assert march.wheels_off(s, 0) == expected
+
+
+def test_structure_runs_on_alone_after_the_train_has_left():
+    system = pushed("to the right", DT)
+    start = system.start.copy()
+    start[state.VEHICLE + 4] += 0.2  # the wheelset's y, beyond its shift's limit
+    response = rq.simulate(replace(system, start=start), target=PYTHON)
+    row = rq.assess(response)
+    assert (row["status"], row["derailment_mode"]) == ("derailed", "slide-off right")
+    assert row["derailed_s"] == pytest.approx(1e-4)
+    # one frame is all that counts of the train: off its rails, then out of the model
+    assert row["off_rail_time_s"] <= 1e-4 + 1e-12
+    assert row["lateral_shift_peak_m"] < 0.22
+    assert response.channel("wheel_load_right_n")[2:] == pytest.approx(0.0)
+    bridge = response.channel("bridge_displacement_m")
+    assert np.all(np.abs(np.diff(bridge[-20:])) > 0.0)  # it is still moving
+    assert np.isnan(response.channel("lateral_shift_m")[-1])
