@@ -48,7 +48,7 @@ pushes = st.tuples(st.floats(-0.3, 0.3), st.just(0.0), st.floats(-0.02, 0.02))
 @FEW
 @given(throws, pushes)
 def test_energy_never_grows_without_input(speeds, pier):
-    """Of train, pier and springs together, from frame to frame, less gravity's and spin's work.
+    """Of train, pier and springs together, less gravity's and spin's work, over the whole run.
 
     Impact, creep, dashpots, Rayleigh and hinge only take.  What the staggered coupling makes of it
     is held to a thousandth of the energy thrown in.
