@@ -157,3 +157,13 @@ def test_one_iteration_is_one_newton_correction(system):
     for law in (boucwen.advance, boucwen.advance_linearised):
         found = law(x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, free, flexibility, *parameters)
         assert found[1] - z == pytest.approx(expected - z, rel=1e-5)
+
+
+@pytest.mark.parametrize(("iterations", "missed"), [(1.0, 3.0), (50.0, 0.0)])
+def test_steps_whose_hinge_does_not_converge_are_counted(system, iterations, missed):
+    s, q = system.start.copy(), system.constants.copy()
+    q[constant.TOLERANCE], q[constant.MAX_ITERATIONS] = 1e-13, iterations
+    s[state.GROUND] = 900.0
+    for _ in range(3):
+        pier.move_structure(s, q, 0)
+    assert s[state.UNCONVERGED, 0] == missed
