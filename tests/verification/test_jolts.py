@@ -53,7 +53,7 @@ def test_whole_balance_closes(jolted):
 
 def test_contact_loses_no_more_than_its_own_equations_do(jolted):
     """An indentation that turns with the flange's slope, and a stiffness that changes with the
-    place, are work that the stored energy does not see: 12 to 17 % of impact and creep at such a
+    place, are work that the stored energy does not see: 10 to 14 % of impact and creep at such a
     blow, as a loss, in the second writing too.
     """
     name, response = jolted
