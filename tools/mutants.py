@@ -114,7 +114,7 @@ class Campaign:
         """Find out what each test calls, then look which mutants the tests kill."""
         uncompiled()
         items = {item.nodeid: item for item in session.items}
-        found = in_fork(lambda: profile(list(items.values()), self.options.seconds), 3600.0)
+        found = in_fork(lambda: profile(list(items.values()), self.options.seconds))
         if not isinstance(found, dict):
             raise SystemExit(f"the tests could not be profiled: {found}")
         times, calls, dropped = found["times"], found["calls"], found["dropped"]
@@ -150,9 +150,8 @@ class Campaign:
             chosen = [*recent, *(t for t in chosen if t not in recent)]
             fate, by = "untested", ""
             if chosen:
-                limit = 10.0 + 5.0 * sum(times[t] for t in chosen)
-                todo = [items[t] for t in chosen]
-                result = in_fork(lambda m=mutant, i=todo: attack(m, i), limit)
+                todo = [(items[t], 5.0 + 5.0 * times[t]) for t in chosen]
+                result = in_fork(lambda m=mutant, i=todo: attack(m, i))
                 fate, by = result if isinstance(result, list) else (str(result), "")
             if by and by in items:
                 self.recent[name] = [by, *(t for t in recent if t != by)][:4]
@@ -187,14 +186,13 @@ def uncompiled() -> None:
     kernel._bind_cached = bound  # type: ignore[assignment]
 
 
-def in_fork(work: Any, limit: float) -> Any:
+def in_fork(work: Any) -> Any:
     """What ``work`` returns, in a process of its own; ``"crashed"`` or ``"timeout"`` otherwise."""
     sys.stdout.flush()
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
         os.close(reading)
-        signal.setitimer(signal.ITIMER_REAL, limit)
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         silent = os.open(os.devnull, os.O_WRONLY)
         os.dup2(silent, 1)
@@ -259,12 +257,14 @@ def profile(items: list[pytest.Item], seconds: float) -> dict[str, Any]:
     return {"times": times, "calls": calls, "dropped": dropped}
 
 
-def attack(mutant: Mutant, items: list[pytest.Item]) -> tuple[str, str]:
-    """Whether one of the tests kills the mutant, and which."""
+def attack(mutant: Mutant, items: list[tuple[pytest.Item, float]]) -> tuple[str, str]:
+    """Whether one of the tests kills the mutant, and which; each has its own time limit."""
     function = getattr(import_module(f"railquake.physics.{mutant.module}"), mutant.function)
     function.__code__ = mutant.code
     function.__defaults__ = mutant.defaults
-    for item, following in zip(items, [*items[1:], None], strict=True):
+    order = [item for item, _ in items]
+    for (item, limit), following in zip(items, [*order[1:], None], strict=True):
+        signal.setitimer(signal.ITIMER_REAL, limit)  # its default action ends the process
         if outcome(item, following) != "passed":
             return "killed", item.nodeid
     return "survived", ""
