@@ -32,7 +32,7 @@ from railquake.time_step import TimeStep, search_time_step
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
 
-__all__ = ["choose_time_step", "simulate_many"]
+__all__ = ["choose_time_step", "group_of", "prepare", "run_here", "simulate_many"]
 
 Row = dict[str, Any]
 REFRESH_STEPS = 10  # of the hinge's degradation
@@ -107,7 +107,7 @@ def simulate_many(
     return _results(
         enumerate(scenarios),
         count,
-        lambda drawn, stop: _run(drawn, refresh_steps, singly, stop, make_lanes),
+        lambda drawn, stop: run_here(drawn, stop, refresh_steps, singly, make_lanes),
     )
 
 
@@ -291,14 +291,29 @@ class _Abreast:
         return self.states[:, lane : lane + 1]
 
 
-def _run(
+def run_here(
     scenarios: Iterator[tuple[int, Scenario]],
-    refresh_steps: int,
-    singly: bool,
     stop: threading.Event,
+    refresh_steps: int = REFRESH_STEPS,
+    singly: bool = False,
     make_lanes: MakeLanes = _Abreast,
 ) -> Iterator[tuple[int, Row]]:
-    """One thread's share."""
+    """Run numbered scenarios on this thread: one thread's share of `simulate_many`.
+
+    Parameters
+    ----------
+    scenarios : iterator of (int, Scenario)
+        Drawn as they are needed.
+    stop : threading.Event
+        Once it is set, no more rows come.
+    refresh_steps, singly, make_lanes
+        What `simulate_many` has chosen.
+
+    Yields
+    ------
+    index : int
+    row : dict
+    """
     batches: dict[Any, _Batch] = {}
     for index, scenario in scenarios:
         begin = time.perf_counter()
@@ -311,7 +326,7 @@ def _run(
         if singly or scenario.solver.contact == "grid":
             yield index, assess(replace(simulate(system), time_step=choice))
             continue
-        key = _group(system)
+        key = group_of(system)
         if key not in batches:
             if len(batches) >= OPEN_BATCHES:
                 oldest = batches.pop(next(iter(batches)))
@@ -327,8 +342,8 @@ def _run(
         yield from batch.drained(stop)
 
 
-def _group(system: System) -> Any:
-    """What scenarios must share to go abreast."""
+def group_of(system: System) -> Any:
+    """What scenarios must share to go abreast; hashable."""
     laws = tuple(sorted((a.__qualname__, b.__qualname__) for a, b in system.laws.items()))
     # the batch keeps the table alive, so its identity is not used again
     return (
@@ -340,6 +355,11 @@ def _group(system: System) -> Any:
         system.drive.shape[1],
         id(system.geometry.table),
     )
+
+
+def prepare(system: System) -> None:
+    """Compile or load the kernel that many scenarios of this group take."""
+    _Batch(system, REFRESH_STEPS).advance()
 
 
 @dataclass

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import REFRESH_STEPS, _run
+from railquake.lockstep import run_here
 from railquake.study.design import Design
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def run_batch(
                 done[row] = {"status": "failed", "error": str(error)}
 
     try:
-        for row, measures in _run(scenarios(batch.rows), REFRESH_STEPS, False, stop):
+        for row, measures in run_here(scenarios(batch.rows), stop):
             done[row] = measures
     except Exception:
         # one of them has a fault that nobody foresaw: the others shall not suffer
@@ -103,7 +103,7 @@ def run_batch(
             if row in done or stop.is_set():
                 continue
             try:
-                done.update(_run(scenarios([row]), REFRESH_STEPS, False, stop))
+                done.update(run_here(scenarios([row]), stop))
             except Exception as error:
                 text = " ".join(f"{type(error).__name__}: {error}".split())
                 done[row] = {"status": "failed", "error": f"unexpected: {text}"}

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import REFRESH_STEPS, _Batch, _group, choose_time_step
+from railquake.lockstep import choose_time_step, group_of, prepare
 from railquake.physics.kernel import lockstep_target
 from railquake.study.batches import Batch, Ended, kept_design, run_batch
 from railquake.study.design import Design
@@ -167,13 +167,13 @@ def _compile(design: Design, work: Work, say: Callable[[str], None]) -> None:
         seen.add(kernel_key(scenario))
         with suppress(InputError):  # the run will say so
             system = assemble(scenario)
-            group = _group(system)
+            group = group_of(system)
             if group in seen:
                 continue
             seen.add(group)
             if not system.kernel(lockstep_target()).is_cached:
                 say(COMPILING)
-            _Batch(system, REFRESH_STEPS).advance()
+            prepare(system)
 
 
 def _run_all(
