@@ -51,7 +51,7 @@ bench-gpu: $(VENV)/.ready-gpu
 validate: $(VENV)/.ready-fem
 	$(BIN)/railquake validate --page docs/validation.md
 
-# Whether the tests can fail; hours on one core, some minutes with EVERY=20 (a sample).
+# Whether the tests can fail; about an hour on a free core, minutes with EVERY=20 (a sample).
 EVERY ?= 1
 mutants: $(VENV)/.ready-dev
 	$(BIN)/python tools/mutants.py --every $(EVERY)

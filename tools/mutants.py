@@ -8,7 +8,7 @@ their code.  Here the function's code itself is exchanged, in a forked process f
 Everything runs uncompiled.  The contact table alone comes from the compiled, unchanged grid
 method: the interpreter would need minutes for it, and the grid method has tests of its own.
 
-    python tools/mutants.py                      all modules: hours; make mutants
+    python tools/mutants.py                      all modules, about an hour: make mutants
     python tools/mutants.py --module zhai        one
     python tools/mutants.py --function react     some functions
 """
