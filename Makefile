@@ -7,12 +7,12 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input
 SHELL  := /bin/bash
 
-.PHONY: help demo test lint format types layers docs bench bench-gpu validate constraints clean
+.PHONY: help demo test lint format types layers docs bench bench-gpu validate mutants constraints clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
-	@echo "make demo | test | lint | format | types | layers | docs | bench | bench-gpu | validate | clean"
+	@echo "make demo | test | lint | format | types | layers | docs | bench | bench-gpu | validate | mutants | clean"
 
 demo: $(VENV)/.ready-run
 	$(BIN)/railquake demo --out $(DEMO)
@@ -50,6 +50,11 @@ bench-gpu: $(VENV)/.ready-gpu
 # Every comparison, and the documentation's page of them; the reference data lie in ../shared.
 validate: $(VENV)/.ready-fem
 	$(BIN)/railquake validate --page docs/validation.md
+
+# Whether the tests can fail; hours on one core, some minutes with EVERY=20 (a sample).
+EVERY ?= 1
+mutants: $(VENV)/.ready-dev
+	$(BIN)/python tools/mutants.py --every $(EVERY)
 
 # One stamp per set of packages.  Each holds when the interpreter and both lists are older than it.
 $(VENV)/.ready-run:   EXTRAS :=

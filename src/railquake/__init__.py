@@ -9,10 +9,13 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from railquake.version import __version__
+
 if TYPE_CHECKING:
     from railquake.assembly import assemble as assemble
     from railquake.assessment import assess as assess
     from railquake.errors import InputError as InputError
+    from railquake.fragility import Fragility as Fragility
     from railquake.inputs.motion import GroundMotion as GroundMotion
     from railquake.inputs.motion import read_motion as read_motion
     from railquake.inputs.scenario import Scenario as Scenario
@@ -24,10 +27,9 @@ if TYPE_CHECKING:
     from railquake.study import Study as Study
     from railquake.study import load_study as load_study
 
-__version__ = "0.1.0"
-
 # Loaded when first asked for: `import railquake` stays quick.
 _HOMES = {
+    "Fragility": "railquake.fragility",
     "GroundMotion": "railquake.inputs.motion",
     "InputError": "railquake.errors",
     "Response": "railquake.response",

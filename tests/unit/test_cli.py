@@ -100,13 +100,6 @@ def test_a_folder_in_use_keeps_what_is_not_ours(case, tmp_path, capsys):
     assert not (out / "hinge-loop.png").exists()
 
 
-def test_demo_needs_nothing(tmp_path, capsys):
-    assert main(["demo", "--out", str(tmp_path / "demo"), "--json"]) == 0
-    row = json.loads(capsys.readouterr().out)
-    assert row["off_rail_time_s"] > 0.0  # worth looking at: wheels lift
-    assert (tmp_path / "demo" / "relative-roll.png").stat().st_size > 10_000
-
-
 def test_modes_as_json(capsys):
     assert main(["modes", "bart", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)

@@ -17,6 +17,7 @@ __all__ = ["UNKNOWN_DEGRADATION", "ContactForces", "critical_time_step", "monoto
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
+STEP_GROWTH = 1.3  # between two time steps that are looked at for stability
 # Nothing known of degradation and pinching: no damage is negative, see `boucwen.degradation_now`.
 UNKNOWN_DEGRADATION = (-1.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -183,14 +184,17 @@ def _newton(residual: Callable[[Array], Array], start: Array) -> Array | None:
     """
     x = start
     found = residual(x)
+    jacobian = None
     for _ in range(60):
         if np.abs(found).max() < 1e-12:
             return x
-        jacobian = np.empty((len(x), len(x)))
-        for k in range(len(x)):
-            unit = np.zeros(len(x))
-            unit[k] = 1e-6
-            jacobian[:, k] = (residual(x + unit) - residual(x - unit)) / 2e-6
+        if jacobian is not None:  # the last one serves as long as it cuts the residual to a tenth
+            near = x - np.linalg.solve(jacobian, found)
+            tried = residual(near)
+            if np.linalg.norm(tried) < 0.1 * np.linalg.norm(found):
+                x, found = near, tried
+                continue
+        jacobian = _jacobian(residual, x)
         try:
             full = -np.linalg.solve(jacobian, found)
         except np.linalg.LinAlgError:
@@ -206,6 +210,16 @@ def _newton(residual: Callable[[Array], Array], start: Array) -> Array | None:
             return x if np.abs(found).max() < 1e-8 else None
         x, found = x + share * full, tried
     return x if np.abs(found).max() < 1e-8 else None
+
+
+def _jacobian(residual: Callable[[Array], Array], x: Array) -> Array:
+    """Derivatives of the residual by central differences."""
+    jacobian = np.empty((len(x), len(x)))
+    for k in range(len(x)):
+        unit = np.zeros(len(x))
+        unit[k] = 1e-6
+        jacobian[:, k] = (residual(x + unit) - residual(x - unit)) / 2e-6
+    return jacobian
 
 
 def critical_time_step(
@@ -246,10 +260,10 @@ def critical_time_step(
 
     trial = 1e-7
     while not unstable(trial):
-        trial *= 1.1
+        trial *= STEP_GROWTH
         if trial > 1.0:
             return 1.0
-    low, high = trial / 1.1, trial
+    low, high = trial / STEP_GROWTH, trial
     for _ in range(20):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if unstable(middle) else (middle, high)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from railquake import __version__
 from railquake.calibration.calibrate import Calibration
 from railquake.inputs._toml import dumps
+from railquake.version import __version__
 
 __all__ = ["preset_text"]
 

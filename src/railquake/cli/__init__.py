@@ -3,7 +3,7 @@
 A module a group of commands; each registers with `application.app` when it is imported here.
 """
 
-from railquake.cli import bench, calibrate, probe, select, single, study, validate
+from railquake.cli import bench, calibrate, probe, report, select, single, study, validate
 from railquake.cli.application import app
 from railquake.cli.status import main
 
@@ -13,6 +13,7 @@ __all__ = [
     "calibrate",
     "main",
     "probe",
+    "report",
     "select",
     "single",
     "study",

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from railquake import __version__
+from railquake.version import __version__
 
 __all__ = ["app", "probe_app"]
 

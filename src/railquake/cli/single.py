@@ -1,4 +1,4 @@
-"""Commands for one run: demo, run, presets, check, modes."""
+"""Commands for one run: run, presets, check, modes."""
 
 from __future__ import annotations
 
@@ -23,23 +23,6 @@ from railquake.errors import InputError
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
     from railquake.response import Response
-
-# The built-in run: a synthetic motion, so that no file is needed.
-DEMO = {"seed": 18, "duration": "20 s", "pga": "1.0 g", "ground_frequency": "1.8 Hz"}
-
-
-@app.command()
-def demo(out: Out = Path("demo-out"), as_json: Json = False) -> None:
-    """Run a built-in case: car, pier and synthetic earthquake.
-
-    A BART car at 80 km/h on a Berkeley pier; needs no file.  Wheels touch with their flanges and
-    lift off; see the pictures.
-
-    Example: railquake demo --out demo-out
-    """
-    from railquake.inputs.scenario import scenario
-
-    run_scenario(scenario(synthetic=DEMO), out, as_json)
 
 
 @app.command()

@@ -21,6 +21,7 @@ alpha (1 + c_r) = ln((1 + alpha)/(1 - alpha c_r)), with which a free impact rebo
 """
 
 import math
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -106,6 +107,7 @@ class HertzTable(NamedTuple):
 HERTZ_NODES = 4097
 
 
+@cache
 def hertz_table(youngs_modulus: float, poisson_ratio: float) -> HertzTable:
     """Tabulate all that a contact needs to know of its curvatures' ratio, for one material."""
     from railquake.physics.creep import kalker_coefficients

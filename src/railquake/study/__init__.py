@@ -14,11 +14,14 @@
 `results`        reading them, merging shards
 """
 
+from pathlib import Path
+
 from railquake.study.engine import StudyProgress
 from railquake.study.file import Study, load_study
 from railquake.study.results import StudyResults, merge_results, open_results
 
 __all__ = [
+    "DEMO_FILE",
     "Study",
     "StudyProgress",
     "StudyResults",
@@ -26,3 +29,6 @@ __all__ = [
     "merge_results",
     "open_results",
 ]
+
+DEMO_FILE = Path(__file__).with_name("demo.toml")
+"""The built-in study: the paper's, with synthetic motions."""

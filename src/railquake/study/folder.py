@@ -109,7 +109,7 @@ class ResultsFolder:
         InputError
             If it holds another study, or something else, or cannot be written.
         """
-        from railquake import __version__
+        from railquake.version import __version__
 
         _writable(self.path)
         file = self.path / STUDY_FILE

@@ -25,7 +25,13 @@ COMPARISONS: tuple[str, ...] = (
     "kalker_coefficients",
     "creep_laws",
     # classical cases with closed forms
-    # the whole, written a second time
+    "classical_free_vibration",
+    "classical_resonance",
+    "classical_overturning",
+    "classical_sliding",
+    "classical_flange",
+    "classical_steady_force",
+    "classical_bouncing",
     # the hinge of the case study against a fibre section
     "column_fit",
 )

@@ -137,3 +137,17 @@ def test_a_car_with_springs_on_one_side_only_is_one_block():
     even = vehicle_matrices(two_bodies())
     assert lateral_block(lopsided.stiffness, lopsided.damping) == 6
     assert lateral_block(even.stiffness, even.damping) == 4
+
+
+def test_how_a_car_splits_does_not_depend_on_its_units():
+    for pair, rows in ((True, 4), (False, 6)):
+        matrices = vehicle_matrices(two_bodies(pair=pair))
+        for scale in (1e-14, 1.0, 1e14):
+            found = lateral_block(scale * matrices.stiffness, scale * matrices.damping)
+            assert found == rows
+    assert lateral_block(np.zeros((3, 3)), np.zeros((3, 3))) == 2  # one body, no springs
+
+
+def test_a_body_on_no_springs_swings_at_no_frequency():
+    frequencies, _ = fixed_wheelset_modes(np.ones(6), np.zeros((6, 6)))
+    assert frequencies.tolist() == [0.0, 0.0, 0.0]

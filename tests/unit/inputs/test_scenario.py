@@ -63,6 +63,7 @@ def test_solver_defaults():
     solver = scenario(record="x.AT2").solver
     assert solver.model_dump() == {
         "dt": 1e-5,
+        "time_step_tolerance": 0.01,
         "contact": "table",
         "hinge_solve": "newton",
         "phi": 0.5,

@@ -175,3 +175,14 @@ def test_level_wheelset_bears_on_two_wheels_lifted_on_one_high_up_on_none(bench)
     assert one[state.FORCE_PSI] < 0.0  # the right rail turns it back
     none = bench.place(0.0, height - 1e-3, 0.0)[:, 0]
     assert none[state.LOAD_LEFT] == none[state.LOAD_RIGHT] == none[state.FORCE_Y] == 0.0
+
+
+@pytest.mark.parametrize("side", list(SIDES))
+@pytest.mark.parametrize("zone", list(ZONES))
+def test_grid_search_in_the_tables_place_gives_the_same_patch(bench, side, zone):
+    s = bench.place(0.0031, -0.391, -0.0012)
+    geometry, q = bench.system.geometry, bench.system.constants
+    table = march.patch_at(s, q, geometry, SIDES[side], ZONES[zone], 0)
+    grid = march.search_grid(s, q, geometry, SIDES[side], ZONES[zone], 0)
+    assert grid[0] == pytest.approx(table[0], abs=2e-6)
+    assert grid[1:] == pytest.approx(table[1:], rel=0.02, abs=2e-3)

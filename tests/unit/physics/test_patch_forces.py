@@ -2,10 +2,12 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from railquake.physics import constant, march, state
 from railquake.physics.march import patch_forces
 
 K, CREEP, SPIN = 9e10, 6e10, 4e11  # of the order of the presets'
@@ -93,3 +95,56 @@ def test_friction_opposes_the_sliding_and_spin_climbs_the_flange():
     flange = patch_forces(**{**still, "slope": -1.0, "gap_psi": -0.4})
     tangential = (flange[1] - flange[2]) / math.sqrt(2.0)
     assert tangential > 0.0
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_patches_of_a_wheel_add_up_for_all_axles_in_the_tracks_axes(side):
+    """Tread and flange at once: forces mirrored on the left, loads and powers summed."""
+    s = np.zeros((state.VEHICLE, 1))
+    q = np.zeros((constant.VEHICLE, 1))
+    s[[state.HEIGHT, state.SHIFT_V, state.HEIGHT_V, state.ROLL_V], 0] = (-0.39, 0.02, 0.03, -0.04)
+    psi = 0.01
+    s[[state.ROLL_SIN, state.ROLL_COS], 0] = math.sin(psi), math.cos(psi)
+    s[state.ON_TRACK] = 1.0
+    q[constant.AXLES], q[constant.FRICTION], q[constant.INVERSE_SPEED] = 4.0, 0.3, 1.0 / 22.0
+    q[constant.ALPHA_R], q[constant.ONSET_BOUND] = 0.45, 0.1
+    sign = 1.0 if side == 1 else -1.0
+    expected = np.zeros(7)
+    for zone, (slope, gap_psi, sunk) in enumerate(((0.01, -0.87, 6e-5), (-0.9, -0.5, 4e-5))):
+        gap, rail_z = -0.39 - sunk, 0.001 + 0.004 * zone
+        march.bear(s, q, side, zone, gap, slope, gap_psi, rail_z, K, CREEP, SPIN, 0)
+        one = patch_forces(
+            sunk, slope, gap_psi, rail_z + 0.39, K, CREEP, SPIN, sign * 0.02, 0.03, sign * -0.04,
+            sign * math.sin(psi), math.cos(psi), 0.0, 0.45, 0.1, 0.3, 1.0 / 22.0,
+        )  # fmt: skip
+        _, y, z, turning, *powers = one
+        expected += 4.0 * np.array([sign * y, z, sign * turning, *powers])
+        row = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
+        assert s[row + state.PATCH_PENETRATION, 0] == pytest.approx(sunk)
+        assert s[row + state.PATCH_HYSTERESIS, 0] == one[0] > 0.0
+    assert s[state.FORCE_Y : state.SPIN_POWER + 1, 0] == pytest.approx(expected, rel=1e-9)
+    assert s[state.LOAD_LEFT + side, 0] == pytest.approx(-expected[1])
+    assert s[state.LATERAL_LEFT + side, 0] == pytest.approx(-expected[0])
+    assert s[state.LOAD_RIGHT - side, 0] == s[state.LATERAL_RIGHT - side, 0] == 0.0
+    s[state.ON_TRACK] = 0.0  # a train that has left presses no more
+    before = s[state.FORCE_Y : state.SPIN_POWER + 1, 0].copy()
+    march.bear(s, q, side, 0, -0.3901, 0.01, -0.87, 0.001, K, CREEP, SPIN, 0)
+    assert s[state.FORCE_Y : state.SPIN_POWER + 1, 0] == pytest.approx(before)
+
+
+@given(patches())
+def test_without_a_limit_the_tangential_force_is_kalkers(p):
+    """F_y = -f22 v/V - f23 sin(gamma - psi)/r, f22 and f23 as delta and delta^1.5."""
+    p = {**p, "friction": 1e9, "hysteresis": 0.01}
+    _, q_y, q_z, *_ = patch_forces(**p)
+    angle = math.atan(p["slope"])
+    psi = math.atan2(p["roll_sin"], p["roll_cos"])
+    delta = p["penetration"] * math.cos(angle)
+    arm_y = -p["gap_psi"] - p["slope"] * p["arm_z"]
+    sideways = p["shift_v"] - p["roll_v"] * p["arm_z"]
+    downwards = p["height_v"] + p["roll_v"] * arm_y
+    sliding = sideways * math.cos(angle) + downwards * math.sin(angle)
+    expected = -CREEP * delta * sliding * p["inverse_speed"]
+    expected -= SPIN * delta**1.5 * math.sin(angle - psi)
+    found = q_y * math.cos(angle) + q_z * math.sin(angle)
+    assert found == pytest.approx(expected, rel=1e-5, abs=1e-3 + 1e-9 * (abs(q_y) + abs(q_z)))

@@ -1,0 +1,49 @@
+"""Command for the report of a study."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from railquake.cli.application import app
+
+__all__ = ["report_with_notes"]
+
+
+@app.command()
+def report(
+    folder: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder of a study.", show_default=False)
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="The page; DIR/report.html by default."),
+    ] = None,
+    hazard: Annotated[
+        str | None,
+        typer.Option(
+            "--hazard", help="Uniform hazard spectra to draw the suite against: a name or a CSV."
+        ),
+    ] = None,
+) -> None:
+    """Write the report of a study: one HTML page that needs nothing else.
+
+    The folder figures beside it gets each figure as PNG and CSV.  A few runs are made again
+    for it.
+
+    Example: railquake report study
+    """
+    report_with_notes(folder, out, hazard)
+
+
+def report_with_notes(folder: Path, out: Path | None = None, hazard: str | None = None) -> None:
+    """Write a report, and say on standard error what takes long."""
+    from railquake.report import write_report
+
+    def say(text: str) -> None:
+        typer.echo(f"railquake: {text}", err=True)
+
+    page = write_report(folder, out, hazard=hazard, notify=say)
+    typer.echo(f"report                   {page.resolve()}")

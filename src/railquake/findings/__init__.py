@@ -1,0 +1,39 @@
+"""What the runs of a study say together: correlations, paired comparisons, answers in sentences.
+
+`resampling`   the bootstrap that draws records, and quantities with intervals
+`correlation`  which measure goes with uplift
+`comparison`   the same record, level and speed under two models
+`lateral`      where the lateral force levels off
+`spectral`     spectral acceleration at the pier's first period
+`questions`    the three questions and the findings of the paper, as sentences
+
+The methods: docs/theory/findings.md.
+"""
+
+from railquake.findings.comparison import Comparison, compare_models
+from railquake.findings.correlation import Correlation, Correlations, Difference, correlate
+from railquake.findings.lateral import LevelOff, force_ratio, level_off
+from railquake.findings.questions import Answer, Evidence, Finding, answer_questions, gather
+from railquake.findings.resampling import Estimate, finished
+from railquake.findings.spectral import first_period, with_spectral_acceleration
+
+__all__ = [
+    "Answer",
+    "Comparison",
+    "Correlation",
+    "Correlations",
+    "Difference",
+    "Estimate",
+    "Evidence",
+    "Finding",
+    "LevelOff",
+    "answer_questions",
+    "compare_models",
+    "correlate",
+    "finished",
+    "first_period",
+    "force_ratio",
+    "gather",
+    "level_off",
+    "with_spectral_acceleration",
+]

@@ -1,0 +1,135 @@
+"""Hinge loops of a few telling runs, run again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from railquake.errors import InputError
+from railquake.inputs.support import Pier
+from railquake.plots.style import BLACK, RED
+from railquake.report.chart import Chart, Line, Panel, Points, Rule
+from railquake.report.context import Section, Text
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from railquake.report.context import Context
+
+__all__ = ["section"]
+
+TITLE = "The plastic hinge: moment against rotation"
+MOST_POINTS = 2500  # of a loop in the page
+
+
+def section(context: Context) -> Section:
+    """Loops of the largest rotation, of medians, and of the run whose uplift gained most."""
+    chosen = _telling(context)
+    panels = []
+    for row, what in chosen:
+        try:
+            panels.append(_loop(context, row, what))
+        except InputError as error:
+            text = f"The runs cannot be made again: {error}."
+            return Section("hinges", TITLE, (Text(text, "note"),))
+    if not panels:
+        text = "No finished run has a plastic (Bouc-Wen) hinge: there are no loops to show."
+        return Section("hinges", TITLE, (Text(text, "note"),))
+    caption = (
+        "Moment of the plastic hinge at the pier’s foot against its rotation, in runs made again "
+        "for this picture; the dotted line is its initial stiffness. Wide loops dissipate energy, "
+        "which is why a nonlinear pier as a rule moves more slowly than an elastic one; loops that "
+        "lean over are a pier that has softened."
+    )
+    chart = Chart("hinge-loops", "Hinge loops of telling runs", caption, tuple(panels))
+    return Section("hinges", TITLE, (chart,))
+
+
+def _telling(context: Context) -> list[tuple[int, str]]:
+    """Rows with a plastic hinge that say most, and why each was chosen."""
+    rows = context.done
+    if "model" in rows and (rows["model"] == "coupled-nonlinear").any():
+        rows = rows[rows["model"] == "coupled-nonlinear"]
+    rows = rows[rows["hinge_rotation_peak_rad"] > 0.0]
+    rows = rows.sort_values("hinge_rotation_peak_rad", ascending=False, kind="stable")
+    rows = _plastic(context, rows)
+    if not len(rows):
+        return []
+    found: dict[int, str] = {int(rows["row"].iloc[0]): "largest rotation"}
+    gained = _gained_most(context, rows)
+    if gained is not None:
+        found.setdefault(gained, "uplift grew most over the elastic pier’s")
+    level = rows["level"].fillna("").astype(str)
+    strongest = rows[level == level.iloc[0]]
+    found.setdefault(int(strongest["row"].iloc[len(strongest) // 2]), "median of its level")
+    found.setdefault(int(rows["row"].iloc[len(rows) // 2]), "median of all")
+    return list(found.items())[:4]
+
+
+def _plastic(context: Context, rows: pd.DataFrame) -> pd.DataFrame:
+    """Those with a plastic hinge, as far as the axes tell them apart."""
+    axes = [axis.column for axis in context.results.study.axes]
+    keys = [name for name in axes if name in rows and ("." not in name or "hinge" in name)]
+    known: dict[Any, bool] = {}
+    kept = []
+    for row in rows[["row", *keys]].to_dict("records"):
+        key = tuple(row[name] for name in keys)
+        if key not in known:
+            try:
+                support = context.results.scenario(int(row["row"])).support
+                known[key] = isinstance(support, Pier) and support.hinge == "bouc-wen"
+            except InputError:
+                known[key] = True  # the reason is told when it is run
+        kept.append(known[key])
+    return rows[np.array(kept, dtype=bool)] if kept else rows
+
+
+def _gained_most(context: Context, rows: pd.DataFrame) -> int | None:
+    from railquake.findings.comparison import pairs_of
+
+    if "model" not in context.done:
+        return None
+    pairs = pairs_of(context.done, "uplift_ratio", "coupled-nonlinear", "coupled-elastic")
+    pairs = pairs[(pairs["x"] > 0.0) & pairs["row_y"].isin(rows["row"])]
+    if not len(pairs):
+        return None
+    return int(pairs["row_y"].iloc[int(np.argmax(pairs["y"] / pairs["x"]))])
+
+
+def _loop(context: Context, row: int, what: str) -> Panel:
+    from railquake.simulation import simulate
+
+    context.notify(f"running row {row} again for its hinge ...")
+    scenario = context.results.scenario(row)
+    response = simulate(scenario, notify=context.notify)
+    assert isinstance(scenario.support, Pier)
+    rotation = 1e3 * response.channel("hinge_rotation_rad")
+    moment = 1e-6 * response.channel("base_moment_n_m")
+    keep = _corners(rotation, moment)
+    k0 = 1e-9 * scenario.support.bouc_wen.k0  # MN m per mrad
+    reach = min(float(np.abs(rotation).max()), float(np.abs(moment).max()) / k0)
+    (words,) = context.words(context.table[context.table["row"] == row])
+    peak = int(np.argmax(np.abs(rotation)))
+    return Panel(
+        f"{what}\n{words}",
+        "hinge rotation, mrad",
+        "moment, MN m",
+        (
+            Rule(x=0.0),
+            Rule(y=0.0),
+            Line("path", RED, rotation[keep], moment[keep], width=1.0),
+            Line("initial stiffness", BLACK, np.array([-reach, reach]),
+                 k0 * np.array([-reach, reach]), dash="dotted", width=1.4),
+            Points("largest rotation", BLACK, rotation[[peak]], moment[[peak]], np.array([row]),
+                   [words]),
+        ),
+    )  # fmt: skip
+
+
+def _corners(x: Any, y: Any) -> Any:
+    """Places of a path that a picture needs: evenly along its drawn length."""
+    steps = np.hypot(np.diff(x) / (np.ptp(x) or 1.0), np.diff(y) / (np.ptp(y) or 1.0))
+    length = np.concatenate([[0.0], np.cumsum(steps)])
+    wanted = np.linspace(0.0, length[-1], MOST_POINTS)
+    return np.unique(np.append(np.searchsorted(length, wanted), 0)).clip(0, len(x) - 1)

@@ -1,0 +1,167 @@
+"""Some milliseconds in which everything happens: for quick tests of every stage of a step.
+
+The ground jumps by ninety times gravity, so that the hinge yields and wears, and the train is
+pushed over the rails into a flange and onto it.  ``verification/jolts.json`` holds what the
+equations written a second time (`independent_model`) give; run this file to write it again.
+"""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import railquake as rq
+from railquake.assembly.system import GRAVITY
+from railquake.inputs.motion import GroundMotion
+from railquake.physics import constant, march, state
+from railquake.physics.vehicle import kernel_order
+
+FILE = Path(__file__).with_name("verification") / "jolts.json"
+DT = 1e-5
+FRAME = 1e-4
+FINE = 0.02e-3  # s, between the points over which powers are summed
+EVERY = 25  # of them are kept
+SIDEWAYS = np.array([0.0, 500.0, 900.0, 900.0, 400.0, -600.0, -200.0])  # m/s2, each millisecond
+UPWARDS = np.array([0.0, 20.0, -60.0, -60.0, 30.0, 50.0, 0.0])
+PIER = {
+    "preset": "bart-berkeley",
+    # a foot that Newmark's method follows at this step; the preset's is next to nothing
+    "base_rotational_inertia": 1e5,
+    # a hinge that wears within the jolt
+    "bouc_wen": {"rho_eps": 0.5, "eta0": 0.2, "rho_p": 0.4, "eps_p": 2e-4, "sigma": 4e-4, "u": 2.5},
+}
+# what differs, and to which side the train is pushed
+JOLTS = {
+    "to the right": ({}, 1.0),
+    "to the left, elastic": ({"scale": -1.0, "hinge": "elastic"}, -1.0),
+    "decoupled, creeping": ({"coupled": False, "speed": "0.01 km/h", "scale": 0.8}, 1.0),
+}
+SHIFT, SPEED, TURNING = 6.5e-3, 1.5, 0.4  # m, m/s of all bodies, rad/s of the wheelset
+STORED = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
+STORED["times"] = FINE * np.arange(round(1e-3 * (len(SIDEWAYS) - 1) / FINE) + 1)
+
+
+def jolt(name, dt=DT, sign=1.0, frame=FRAME, **pier):
+    """Scenario of a jolt; with ``sign=-1`` turned round, with other values of the pier."""
+    changes = dict(JOLTS[name][0])
+    changes["scale"] = sign * changes.get("scale", 1.0)
+    return rq.scenario(
+        support={**PIER, **pier},
+        motion=GroundMotion("jolt", 1e-3, SIDEWAYS),
+        vertical=GroundMotion("jolt", 1e-3, UPWARDS),
+        dt=dt,
+        history_step=frame,
+        **changes,
+    )
+
+
+def push(name):
+    """What is added to the state at rest: pier x, v; hinge; vehicle x, v."""
+    sideways = np.tile([1.0, 0.0, 0.0], 3)
+    turning = TURNING * (np.arange(9) == 8)
+    return JOLTS[name][1] * np.concatenate(
+        [np.zeros(9), SHIFT * sideways, SPEED * sideways + turning]
+    )
+
+
+def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
+    """The system with the push, and with the forces and accelerations that belong to it."""
+    system = rq.assemble(jolt(name, dt, sign, frame, **pier))
+    s, q, matrices = system.start.copy(), system.constants, system.vehicle
+    x, v, a = (state.VEHICLE + k * 9 + np.argsort(kernel_order(9)) for k in range(3))
+    s[x, 0] += sign * push(name)[9:18]
+    s[v, 0] += sign * push(name)[18:]
+    march.find_contact_forces(s, q, system.geometry)
+    s[state.WORK_TRACK] = 0.0
+    s[state.TRACK_OLD : state.TRACK_OLD + 3] = s[state.TRACK_FY : state.TRACK_FY + 3]
+    s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3] = s[state.WHEELSET_Y : state.WHEELSET_Y + 3]
+    powers = slice(state.IMPACT_POWER, state.IMPACT_POWER + 3)
+    s[state.IMPACT_POWER_OLD : state.IMPACT_POWER_OLD + 3] = s[powers]
+    s[state.DASHPOT_POWER] = s[v, 0] @ matrices.damping @ s[v, 0]
+    force = np.where(np.arange(9) % 3 == 1, matrices.mass * GRAVITY, 0.0)
+    force -= matrices.stiffness @ s[x, 0] + matrices.damping @ s[v, 0]
+    force[-3:] += s[state.WHEELSET_Y : state.WHEELSET_Y + 3, 0]
+    s[a, 0] = s[a + 9, 0] = force / matrices.mass
+    k = q[constant.K : constant.K + 6, 0]
+    column = np.array([[k[0], k[1], k[2]], [k[1], k[3], k[4]], [k[2], k[4], k[5]]])
+    node = q[constant.REACTION, 0] * np.array([s[state.NODE_U, 0], 0.0, s[state.NODE_THETA2, 0]])
+    node[1] = -s[state.MOMENT, 0]
+    pier = node - column @ s[state.U : state.U + 3, 0]
+    s[state.U_A : state.U_A + 3, 0] = pier / q[constant.M_U : constant.M_U + 3, 0]
+    return replace(system, start=s)
+
+
+def measured(states, touches, whole):
+    """What a history and the energy audit show, from the second writing, by the same names."""
+    x, v, hinge, vehicle, speed = np.split(states, [3, 6, 9, 9 + whole.n], axis=1)
+    track, track_v = x @ whole.to_track.T, v @ whole.to_track.T
+    moment = np.array([whole.hinge(*row)[0] for row in np.column_stack([x[:, 1], v[:, 1], hinge])])
+    time = STORED["times"]
+    ground = np.interp(time, *whole.ground)
+    down = -np.interp(time, *whole.lift)
+    force = np.array([t.force for t in touches])
+    on_wheelset = np.array([t.on_wheelset for t in touches])
+    on_track = np.array([t.on_track for t in touches])
+
+    def total(power):
+        return [float(np.sum(0.5 * (power[1:] + power[:-1])) * FINE)]
+
+    kept = {
+        "bridge_displacement_m": x[:, 0],
+        "bridge_velocity_m_s": v[:, 0],
+        "hinge_rotation_rad": x[:, 1],
+        "top_rotation_rad": x[:, 2],
+        "base_moment_n_m": moment,
+        "hinge_z_rad": hinge[:, 0],
+        "hinge_energy_per_mass": hinge[:, 1],
+        "hinge_largest_rotation_rad": np.maximum(hinge[:, 2], np.abs(x[:, 1])),
+        "track_lateral_m": track[:, 0],
+        "track_vertical_m": track[:, 1],
+        "track_roll_rad": track[:, 2],
+        "lateral_shift_m": np.array([t.place[0] for t in touches]),
+        "wheelset_height_m": np.array([t.place[1] for t in touches]),
+        "relative_roll_rad": np.array([t.place[2] for t in touches]),
+        "wheel_load_left_n": -force[:, :2, 1].sum(1),
+        "wheel_load_right_n": -force[:, 2:, 1].sum(1),
+        "lateral_force_n": -force[:, :, 0].sum(1),
+    }
+    for k, body in enumerate(("car", "bogie", "wheelset")):
+        for j, what in enumerate(("lateral_m", "vertical_m", "roll_rad")):
+            kept[f"{body}_{what}"] = vehicle[:, 3 * k + j]
+    kept = {name: values[::EVERY].tolist() for name, values in kept.items()}
+    sideways = whole.mass * whole.sideways
+    falling = whole.weight / 9.80665
+    energies = {
+        "ground": total(
+            -whole.pier.mass * ground * v[:, 0]
+            - ground * (speed @ sideways)
+            - down * (speed @ falling)
+        ),
+        "gravity": total(speed @ whole.weight),
+        "hinge": total(moment * v[:, 1]),
+        "rayleigh": total(np.einsum("ti,ij,tj->t", v, whole.pier_c, v)),
+        "dashpots": total(np.einsum("ti,ij,tj->t", speed, whole.c, speed)),
+        "contact_vehicle": total(np.sum(on_wheelset * speed[:, -3:], axis=1)),
+        "contact_track": total(np.sum(on_track * track_v, axis=1)),
+        "impact": total(np.array([t.impact for t in touches])),
+        "creep": total(np.array([t.tangential + t.spin for t in touches])),
+        "spin": total(np.array([t.spin for t in touches])),
+        "hertz": [touches[-1].stored - touches[0].stored],
+    }
+    return {**kept, **{f"energy: {name}": value for name, value in energies.items()}}
+
+
+if __name__ == "__main__":
+    from independent_model import solve
+    from kalker import kalker_table
+
+    reference = kalker_table(Path(sys.argv[1]))
+    times = STORED["times"]
+    found = {
+        n: measured(*solve(jolt(n), reference, times, rtol=1e-8, push=push(n))[:3]) for n in JOLTS
+    }
+    rounded = json.dumps(found, default=float)
+    rounded = json.loads(rounded, parse_float=lambda text: float(f"{float(text):.7g}"))
+    FILE.write_text(json.dumps(rounded, indent=0).replace(",\n", ", ") + "\n", encoding="utf-8")

@@ -1,0 +1,79 @@
+"""A track whose motion is known: followed exactly, whatever the frames."""
+
+import numpy as np
+import pytest
+
+import railquake as rq
+from railquake.physics import constant, march, pier, state
+from railquake.physics.kernel import PYTHON
+
+
+def polynomials(t):
+    """y, z, roll of a track: cubics, which a cubic within a frame gives exactly."""
+    y = 2e-3 + 0.4 * t - 30.0 * t**2 + 900.0 * t**3
+    z = -1e-3 + 0.1 * t + 10.0 * t**2 - 500.0 * t**3
+    roll = 1e-3 - 0.2 * t + 6.0 * t**2 + 200.0 * t**3
+    return np.array([y, z, roll])
+
+
+def slopes(t):
+    y = 0.4 - 60.0 * t + 2700.0 * t**2
+    z = 0.1 + 20.0 * t - 1500.0 * t**2
+    roll = -0.2 + 12.0 * t + 600.0 * t**2
+    return np.array([y, z, roll])
+
+
+STEPS, DT = 4, 2.5e-4
+ENDS = STEPS * DT * np.arange(4)
+
+
+def drive():
+    track, rates = polynomials(ENDS), slopes(ENDS)
+    ground = np.array([[0.0, 8.0, 4.0, 6.0], [1.0, 3.0, -1.0, 0.0]])
+    columns = [*ground, *(v for pair in zip(track, rates, strict=True) for v in pair)]
+    return np.column_stack(columns)
+
+
+def test_position_velocity_and_step_at_every_step():
+    s = np.zeros((state.VEHICLE + 45, 1))
+    q = np.zeros((constant.VEHICLE, 1))
+    q[constant.FRAME_STEPS], q[constant.DT] = STEPS, DT
+    s[state.TRACK_Y : state.TRACK_Y + 3, 0] = polynomials(0.0)
+    before = polynomials(0.0)
+    for frame in range(3):
+        march.begin_frame_on_track(s, q, drive(), frame, 0)
+        for n in range(STEPS):
+            march.move_ground(s, 0)
+            pier.hold_structure(s, q, 0)
+            pier.follow_track(s, q, 0)
+            t = DT * (frame * STEPS + n + 1)
+            now = polynomials(t)
+            assert s[state.TRACK_Y : state.TRACK_Y + 3, 0] == pytest.approx(now, abs=1e-12)
+            assert s[state.TRACK_VY : state.TRACK_VY + 3, 0] == pytest.approx(slopes(t), abs=1e-9)
+            steps = s[state.TRACK_STEP_Y : state.TRACK_STEP_Y + 3, 0]
+            assert steps == pytest.approx(now - before, abs=1e-12)
+            before = now
+            # what the bridge's measures show
+            assert s[state.U, 0] == s[state.TRACK_Y, 0]
+            assert s[state.U_V, 0] == s[state.TRACK_VY, 0]
+            assert s[state.U_A, 0] == pytest.approx(-60.0 + 5400.0 * t, abs=1e-6)
+            assert s[state.THETA2, 0] == pytest.approx(-now[2], abs=1e-12)
+            assert s[state.THETA2_V, 0] == pytest.approx(-slopes(t)[2], abs=1e-9)
+            # and the ground, linear within the frame
+            lateral = np.interp(t, ENDS, drive()[:, 0])
+            assert s[state.GROUND, 0] == pytest.approx(lateral)
+            assert s[state.GROUND_Z, 0] == pytest.approx(np.interp(t, ENDS, drive()[:, 1]))
+
+
+def test_a_wheelset_on_a_track_that_sinks_evenly_keeps_its_load(tmp_path):
+    """Even sinking, from rest in a moving frame: only the jump of the start is felt, and dies."""
+    time = np.arange(0.0, 0.0051, 1e-3)
+    table = np.column_stack([time, np.zeros_like(time), 1e-4 * np.ones_like(time), 0.0 * time])
+    file = tmp_path / "track.csv"
+    lines = ["t_s,y_m,z_m,roll_rad", *(",".join(f"{v:.9g}" for v in row) for row in table)]
+    file.write_text("\n".join(lines))
+    case = rq.scenario(support={"kind": "prescribed", "file": str(file)}, dt="2e-5 s")
+    response = rq.simulate(case, target=PYTHON)
+    loads = response.channel("wheel_load_left_n")
+    assert loads == pytest.approx(loads[0], rel=1e-6)
+    assert response.channel("track_vertical_m") == pytest.approx(1e-4)

@@ -1,0 +1,169 @@
+"""Single stages of a step by themselves: identities that hold to the last digits."""
+
+import numpy as np
+import pytest
+
+from jolts import pushed
+from railquake.assembly.statics import UNKNOWN_DEGRADATION
+from railquake.assembly.system import hinge_parameters
+from railquake.physics import boucwen, constant, march, pier, state, vehicle
+
+DT = 2e-5
+
+
+@pytest.fixture(scope="module")
+def system():
+    return pushed("to the right", DT)
+
+
+def test_structure_keeps_its_energy_to_the_last_digits(system):
+    """Constant average acceleration with trapezoids: work in = kinetic + elastic + hinge + lost."""
+    s, q = system.start.copy(), system.constants
+    drawn = np.random.default_rng(2)
+    k = q[constant.K : constant.K + 6, 0]
+    c = q[constant.C : constant.C + 6, 0]
+    mass = q[constant.M_U : constant.M_U + 3, 0]
+    stiffness, damping = (
+        np.array([[m[0], m[1], m[2]], [m[1], m[3], m[4]], [m[2], m[4], m[5]]]) for m in (k, c)
+    )
+    s[state.U_V : state.U_V + 3, 0] = drawn.normal(size=3) * (0.3, 0.2, 0.1)
+    s[state.GROUND], s[state.GROUND_SLOPE] = 5.0, 0.7
+    x, v = s[state.U : state.U + 3, 0].copy(), s[state.U_V : state.U_V + 3, 0].copy()
+    node = np.array([s[state.NODE_U, 0], 0.0, s[state.NODE_THETA2, 0]])
+    load = node - np.array([q[constant.PIER_LOAD, 0] * 5.0, s[state.MOMENT, 0], 0.0])
+    s[state.U_A : state.U_A + 3, 0] = (load - stiffness @ x - damping @ v) / mass
+
+    def energy():
+        x, v = s[state.U : state.U + 3, 0], s[state.U_V : state.U_V + 3, 0]
+        return 0.5 * v @ (mass * v) + 0.5 * x @ stiffness @ x
+
+    begun, before, work = energy(), x, 0.0
+    for _ in range(40):
+        march.move_ground(s, 0)
+        pier.move_structure(s, q, 0)
+        x = s[state.U : state.U + 3, 0].copy()
+        work += node @ (x - before)
+        before = x
+    given = work + s[state.WORK_GROUND, 0]
+    kept = energy() - begun + s[state.HINGE_ENERGY, 0] + s[state.LOST_RAYLEIGH, 0]
+    assert s[state.LOST_RAYLEIGH, 0] > 0.0
+    assert kept == pytest.approx(given, abs=1e-9 * (abs(begun) + abs(given)))
+    # and it is in balance at the end
+    end = s[state.U_V : state.U_V + 3, 0], s[state.U_A : state.U_A + 3, 0]
+    left = mass * end[1] + damping @ end[0] + stiffness @ x - node
+    left += (q[constant.PIER_LOAD, 0] * s[state.GROUND, 0], s[state.MOMENT, 0], 0.0)
+    assert np.abs(left).max() < 1e-6 * np.abs(stiffness @ x).max()
+    assert s[state.UNCONVERGED, 0] == 0.0
+
+
+def test_ground_and_gravity_work_on_the_steps_of_the_bodies(system):
+    s, q = np.zeros_like(system.start), system.constants
+    steps = np.random.default_rng(4).normal(size=9)
+    s[state.VEHICLE + 36 : state.VEHICLE + 45, 0] = steps
+    s[[state.GROUND, state.GROUND_SLOPE, state.GROUND_Z, state.GROUND_Z_SLOPE], 0] = (
+        3.0,
+        0.4,
+        2.0,
+        0.6,
+    )
+    s[state.DASHPOT_POWER] = 9.0
+    vehicle.carry(s, q, 0)
+    mass = system.vehicle.mass[0::3]
+    lateral, down = mass @ steps[0:6:2], mass @ steps[6:]
+    # the ground's mean over the step that has just passed
+    assert s[state.WORK_GROUND, 0] == pytest.approx(-(3.0 - 0.2) * lateral - (2.0 - 0.3) * down)
+    assert s[state.WORK_GRAVITY, 0] == pytest.approx(9.80665 * down)
+    assert s[state.DASHPOT_POWER_OLD, 0] == 9.0
+    assert s[state.DASHPOT_POWER, 0] == 0.0
+
+
+def test_accelerations_are_those_of_the_equations_of_motion(system):
+    """Eq. 1, row by row, against its matrices; and the dashpots' power."""
+    s, q, matrices = system.start.copy(), system.constants, system.vehicle
+    drawn = np.random.default_rng(6).normal(size=18)
+    order = vehicle.kernel_order(9)
+    s[state.VEHICLE : state.VEHICLE + 18, 0] = drawn
+    s[state.GROUND], s[state.GROUND_Z] = 1.5, -0.5
+    s[state.DASHPOT_POWER] = 0.0
+    s[[state.WHEELSET_Y, state.WHEELSET_Z, state.WHEELSET_PHI], 0] = 1e4, -2e4, 3e3
+    x, v = np.empty(9), np.empty(9)
+    x[order], v[order] = drawn[:9], drawn[9:]
+    for i in range(6):
+        vehicle.accelerate_lateral(s, q, i, 0)
+    for i in range(6, 9):
+        vehicle.accelerate_vertical(s, q, i, 0)
+    s[state.DASHPOT_POWER_OLD] = 3.0
+    vehicle.damp(s, q, 0)
+    s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3, 0] = 5e3, 4e3, -1e3
+    wheelset_steps = np.array([1e-3, -2e-3, 3e-3])
+    s[state.VEHICLE + 36 + np.array([4, 8, 5]), 0] = wheelset_steps
+    vehicle.push_wheelset(s, q, 0)
+    expected = -(matrices.stiffness @ x + matrices.damping @ v)
+    expected[-3:] += 1e4, -2e4, 3e3
+    expected /= matrices.mass
+    expected[0::3] -= 1.5
+    expected[1::3] += 9.80665 + 0.5
+    assert s[state.VEHICLE + 18 : state.VEHICLE + 27, 0] == pytest.approx(expected[order])
+    power = v @ matrices.damping @ v
+    assert s[state.LOST_DASHPOTS, 0] == pytest.approx(0.5 * DT * (3.0 + power))
+    mean = 0.5 * np.array([5e3 + 1e4, 4e3 - 2e4, -1e3 + 3e3])
+    assert s[state.WORK_VEHICLE, 0] == pytest.approx(mean @ wheelset_steps)
+    assert s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3, 0].tolist() == [1e4, -2e4, 3e3]
+
+
+def test_reaction_keeps_the_last_force_and_its_work_on_the_track(system):
+    s, q = system.start.copy(), system.constants
+    old, new = np.array([1.0, 2.0, 3.0]), np.array([40.0, 50.0, 60.0])
+    s[state.TRACK_OLD : state.TRACK_OLD + 3, 0] = old
+    s[state.TRACK_FY : state.TRACK_FY + 3, 0] = new
+    s[state.WORK_TRACK] = 0.0
+    steps = np.array([0.1, -0.2, 0.3])
+    s[state.TRACK_STEP_Y : state.TRACK_STEP_Y + 3, 0] = steps
+    march.react(s, q, 0)
+    assert s[state.WORK_TRACK, 0] == pytest.approx(0.5 * (old + new) @ steps)
+    assert s[state.TRACK_OLD : state.TRACK_OLD + 3, 0].tolist() == new.tolist()
+
+
+def test_a_wheelset_placed_anew_has_nothing_added_up_yet(system):
+    s = system.start.copy()
+    sums = np.r_[state.FORCE_Y : state.SPIN_POWER + 1, state.LOAD_LEFT : state.LATERAL_RIGHT + 1]
+    s[sums] = 7.0
+    march.place_wheelset(s, system.constants, 0)
+    assert not s[sums].any()
+
+
+def test_one_iteration_is_one_newton_correction(system):
+    """z - f/f', f' by differences; so is the linearised law, whatever is left."""
+    h = system.scenario.support.bouc_wen
+    parameters = (*hinge_parameters(h, 1e-12, 1)[:-2], 0.0, 1.0)
+    x, z, eps, x_max = 2e-4, 1.2e-4, 1e-4, 3e-4
+    free, flexibility = 2e-4, 2e-11
+    kp = boucwen.pinched_stiffness(x, eps, *parameters[:1], h.rho_p, 1 / h.sigma, h.u, 1 / h.eps_p)
+
+    def rest(guess):
+        dx = free - flexibility * (h.alpha * kp * x + (1 - h.alpha) * kp * guess)
+        dx /= 1.0 + flexibility * h.alpha * kp
+        reach = max(x_max, abs(x + dx))
+        new = eps + (1 - h.alpha) * kp * guess * dx / h.m
+        d = h.rho_eps * h.m * new / (h.Fy * h.xu) + h.rho_x * reach / h.xu
+        a = np.exp(-h.delta_k * d * np.exp(-h.phi * d))
+        beta = h.beta0 * a * np.exp(h.n * h.delta_f * d)
+        sign = np.sign(dx * guess)
+        return guess - z - (a - beta * abs(guess) ** h.n * (h.eta0 + sign)) * dx
+
+    step = 1e-9
+    slope = (rest(z + step) - rest(z - step)) / (2.0 * step)
+    expected = z - rest(z) / slope
+    for law in (boucwen.advance, boucwen.advance_linearised):
+        found = law(x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, free, flexibility, *parameters)
+        assert found[1] - z == pytest.approx(expected - z, rel=1e-5)
+
+
+@pytest.mark.parametrize(("iterations", "missed"), [(1.0, 3.0), (50.0, 0.0)])
+def test_steps_whose_hinge_does_not_converge_are_counted(system, iterations, missed):
+    s, q = system.start.copy(), system.constants.copy()
+    q[constant.TOLERANCE], q[constant.MAX_ITERATIONS] = 1e-13, iterations
+    s[state.GROUND] = 900.0
+    for _ in range(3):
+        pier.move_structure(s, q, 0)
+    assert s[state.UNCONVERGED, 0] == missed
