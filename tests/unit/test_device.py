@@ -99,6 +99,12 @@ def test_without_a_gpu_one_line_says_so(no_gpu):
     assert "\n" not in str(caught.value)
 
 
+def test_without_the_gpus_compiler_the_extra_is_named(no_gpu, monkeypatch):
+    monkeypatch.setattr("numba.cuda.cudadrv.nvvm.is_available", lambda: False)
+    with pytest.raises(rq.InputError, match=r"no compiler .* pip install railquake\[gpu\]"):
+        simulate_many([], device="cuda")
+
+
 def test_an_unknown_device_is_refused():
     with pytest.raises(rq.InputError, match='device: must be cpu or cuda, found "gpu"'):
         simulate_many([], device="gpu")

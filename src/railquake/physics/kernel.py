@@ -368,6 +368,9 @@ def missing_for_cuda() -> str | None:
         return "numba-cuda is not installed; pip install railquake[gpu]"
     if _import_cuda().is_available():
         return None
+    nvvm: Any = importlib.import_module("numba.cuda.cudadrv.nvvm")
+    if not nvvm.is_available():
+        return "numba-cuda finds no compiler for the GPU; pip install railquake[gpu]"
     return "no NVIDIA GPU answers here, or its driver is missing; run on the CPU instead"
 
 
