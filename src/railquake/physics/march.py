@@ -42,6 +42,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 FAR = 1e-3  # m; no flange comes so much nearer between two looks, see `comes_near`
 # bound when a kernel is made
+BOUND = 5.0  # m or rad; what is farther from where it belongs has diverged
 LANES = 1  # scenarios abreast
 STATE_ROWS = 1  # of a thread's own state and constants, see `march_on_device`
 CONSTANT_ROWS = 1
@@ -656,12 +657,15 @@ def watch(S: Array, Q: Array, lane: int) -> None:
     sum_of_flags += note(S, state.DERAILED, holds_derailed, on, time, lane)
     sum_of_flags += note(S, state.OVERTURNED, holds_overturned, on, time, lane)
     S[state.FLAGS, lane] = sum_of_flags
-    largest = max(
-        max(abs(S[state.U, lane]), abs(S[state.THETA2, lane])),
-        max(max(abs(shift), abs(roll)), abs(S[state.HEIGHT, lane])),
+    # NaN fails every comparison, so it counts as diverged
+    plausible = (
+        abs(S[state.U, lane]) < BOUND
+        and abs(S[state.THETA2, lane]) < BOUND
+        and abs(shift) < BOUND
+        and abs(roll) < BOUND
+        and abs(S[state.HEIGHT, lane] + Q[constant.WHEELSET_HEIGHT, lane]) < BOUND
     )
-    # written so that NaN, which fails every comparison, counts as diverged
-    S[state.DIVERGED, lane] = S[state.DIVERGED, lane] if largest < 5.0 else 1.0
+    S[state.DIVERGED, lane] = S[state.DIVERGED, lane] if plausible else 1.0
     S[state.LEAVING, lane] = on if (holds_derailed or holds_overturned) else 0.0
 
 

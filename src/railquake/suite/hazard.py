@@ -220,7 +220,7 @@ def _parsed(name: str, where: str, text: str) -> Hazard:
         _read_only(table[:, 0].copy()),
         MappingProxyType(curves),
         " ".join(text.removeprefix("Source: ") for text in sources),
-        " ".join(text for text in remarks if text not in sources),
+        "; ".join(text for text in remarks if text not in sources),
     )
 
 

@@ -166,7 +166,16 @@ def test_overturned_when_the_centre_of_gravity_is_outside_the_lower_contact(
 
 @pytest.mark.parametrize(
     ("row", "value"),
-    [("U", 5.1), ("THETA2", -5.1), ("HEIGHT", 5.1), ("U", math.nan), ("U", -math.inf)],
+    [
+        ("U", 5.1),
+        ("THETA2", -5.1),
+        ("HEIGHT", 5.1),
+        ("U", math.nan),
+        ("U", -math.inf),
+        ("SHIFT", math.nan),
+        ("ROLL", math.nan),
+        ("HEIGHT", math.nan),
+    ],
 )
 def test_a_state_out_of_bounds_or_no_number_has_diverged(system, row, value):
     s = placed(system, **{row: value})
