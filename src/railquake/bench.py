@@ -50,8 +50,8 @@ def _rate(case: Scenario, repeats: int) -> tuple[float, float]:
 
 
 def _lockstep_rate(threads: int, repeats: int, motion: dict[str, Any]) -> float:
-    """Best steps per second of a batch, assembly included: four scenarios to a lane."""
-    count = 4 * lockstep_target().lanes * threads
+    """Best steps per second of a batch, assembly included: two dozen scenarios to a lane."""
+    count = 24 * lockstep_target().lanes * threads
     cases = [
         _case(motion={**motion, "seed": 18 + k}, scale=0.6 + 0.8 * k / count) for k in range(count)
     ]
