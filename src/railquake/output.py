@@ -5,10 +5,8 @@ from __future__ import annotations
 import csv
 import json
 import math
-import os
 import shutil
 import signal
-import tempfile
 import threading
 import uuid
 from collections.abc import Iterator, Mapping
@@ -18,11 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 from railquake.assessment import assess
 from railquake.errors import InputError
+from railquake.folders import reason
 
 if TYPE_CHECKING:
     from railquake.response import Response
 
-__all__ = ["json_text", "prepare_folder", "write_run"]
+__all__ = ["json_text", "write_run"]
 
 # What a run writes; only these are replaced in a folder that is there already.
 FILES = (
@@ -44,26 +43,6 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
     return value
-
-
-def prepare_folder(folder: Path) -> None:
-    """Make sure, before a long run, that its results can be written; nothing is left behind.
-
-    Raises
-    ------
-    InputError
-        If the folder cannot be made or written to, or is a file.
-    """
-    if os.path.lexists(folder) and not folder.is_dir():
-        raise InputError(f"--out {folder}: is no folder; name a folder")
-    there = folder.absolute()
-    while not os.path.lexists(there):
-        there = there.parent
-    try:
-        with tempfile.TemporaryFile(dir=there):
-            pass
-    except OSError as error:
-        raise InputError(f"--out {folder}: cannot be written: {_reason(error)}") from None
 
 
 def write_run(response: Response, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
@@ -109,7 +88,7 @@ def write_run(response: Response, folder: Path, *, pictures: bool = True) -> dic
         with _uninterrupted():
             _move(part, folder)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be written: {_reason(error)}") from None
+        raise InputError(f"{folder}: cannot be written: {reason(error)}") from None
     finally:
         with _uninterrupted():
             shutil.rmtree(part, ignore_errors=True)
@@ -149,11 +128,6 @@ def _uninterrupted() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL if handler is None else handler)
         if arrived:
             signal.raise_signal(arrived[0])
-
-
-def _reason(error: OSError) -> str:
-    """Why, on one line."""
-    return error.strerror or " ".join(str(error).split())
 
 
 def _write_events(response: Response, path: Path) -> None:

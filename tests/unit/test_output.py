@@ -8,7 +8,8 @@ import pytest
 
 import railquake as rq
 from railquake import output, plots
-from railquake.output import json_text, prepare_folder, write_run
+from railquake.folders import prepare_folder
+from railquake.output import json_text, write_run
 
 MOTION = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
 NUMBERS = {"summary.json", "history.nc", "events.csv", "case.toml"}

@@ -43,7 +43,8 @@ def run(case: Case, out: Out, changes: Changes = None, as_json: Json = False) ->
 
 def run_scenario(scenario: Scenario, out: Path, as_json: bool) -> None:
     """Run a scenario, write its folder and print what matters."""
-    from railquake.output import prepare_folder, write_run
+    from railquake.folders import prepare_folder
+    from railquake.output import write_run
 
     prepare_folder(out)
     row = write_run(_simulate(scenario), out)

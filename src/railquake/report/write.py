@@ -11,8 +11,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from railquake.errors import InputError
+from railquake.folders import prepare_folder
 from railquake.fragility import OUTCOMES, write_csv
-from railquake.output import prepare_folder
 from railquake.report import (
     curves,
     decoupled,

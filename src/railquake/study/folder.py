@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.folders import prepare_folder, reason
 from railquake.inputs._toml import dumps, read_toml
 from railquake.inputs.units import shown
 from railquake.study.table import distinct
@@ -66,24 +66,6 @@ def read_parquet(path: Path) -> pa.Table:
         return pq.read_table(file, page_checksum_verification=True)
 
 
-def _writable(folder: Path) -> None:
-    """Make sure, before a long run, that the folder can be made and written to."""
-    if os.path.lexists(folder) and not folder.is_dir():
-        raise InputError(f"--out {folder}: is no folder; name a folder")
-    there = folder.absolute()
-    while not os.path.lexists(there):
-        there = there.parent
-    try:
-        with tempfile.TemporaryFile(dir=there):
-            pass
-    except OSError as error:
-        raise InputError(f"--out {folder}: cannot be written: {_reason(error)}") from None
-
-
-def _reason(error: OSError) -> str:
-    return error.strerror or str(error)
-
-
 class ResultsFolder:
     """The folder that a study leaves.
 
@@ -111,7 +93,7 @@ class ResultsFolder:
         """
         from railquake.version import __version__
 
-        _writable(self.path)
+        prepare_folder(self.path)
         file = self.path / STUDY_FILE
         tables = {"railquake": __version__, **study.to_dict()}
         if file.exists():
@@ -129,7 +111,7 @@ class ResultsFolder:
                 text = "# Written by railquake: the study of this folder.\n" + dumps(tables)
                 _replace(file, lambda path: _write_text(path, text))
         except OSError as error:
-            raise InputError(f"--out {self.path}: cannot be written: {_reason(error)}") from None
+            raise InputError(f"--out {self.path}: cannot be written: {reason(error)}") from None
 
     def compare(self, tables: Mapping[str, Any], notify: Callable[[str], None]) -> None:
         """Refuse a study that is not the one of this folder.
@@ -170,7 +152,7 @@ class ResultsFolder:
             _replace(path, lambda part: write_parquet(table, part))
         except OSError as error:
             raise InputError(
-                f"{self.parts}: cannot be written: {_reason(error)}; {self.kept} rows that "
+                f"{self.parts}: cannot be written: {reason(error)}; {self.kept} rows that "
                 "finished before are kept: make room and run the same command again to go on"
             ) from None
         self.kept += len(rows)
@@ -193,7 +175,7 @@ class ResultsFolder:
             if choice is not None:
                 self.note_time_step(choice)
         except OSError as error:
-            raise InputError(f"--out {self.path}: cannot be written: {_reason(error)}") from None
+            raise InputError(f"--out {self.path}: cannot be written: {reason(error)}") from None
 
     def names(self) -> list[str]:
         """Names of the parts, the oldest first."""
@@ -261,7 +243,7 @@ class ResultsFolder:
                 _replace(self.path / TABLE_FILE, partial(write_parquet, table))
             except OSError as error:
                 raise InputError(
-                    f"{self.path / TABLE_FILE}: cannot be written: {_reason(error)}; all rows are "
+                    f"{self.path / TABLE_FILE}: cannot be written: {reason(error)}; all rows are "
                     f"kept in {self.parts}: make room and run the same command again"
                 ) from None
             if names == self.names():
@@ -301,7 +283,7 @@ class ResultsFolder:
             with suppress(FileExistsError):
                 os.link(draft, file)
         except OSError as error:
-            raise InputError(f"{file}: cannot be written: {_reason(error)}") from None
+            raise InputError(f"{file}: cannot be written: {reason(error)}") from None
         finally:
             with suppress(OSError):
                 draft.unlink(missing_ok=True)
