@@ -10,7 +10,7 @@
 The methods: docs/theory/findings.md.
 """
 
-from railquake.findings.comparison import Comparison, compare_models
+from railquake.findings.comparison import PairedComparison, compare_models
 from railquake.findings.correlation import Correlation, Correlations, Difference, correlate
 from railquake.findings.lateral import LevelOff, force_ratio, level_off
 from railquake.findings.questions import Answer, Evidence, Finding, answer_questions, gather
@@ -19,7 +19,6 @@ from railquake.findings.spectral import first_period, with_spectral_acceleration
 
 __all__ = [
     "Answer",
-    "Comparison",
     "Correlation",
     "Correlations",
     "Difference",
@@ -27,6 +26,7 @@ __all__ = [
     "Evidence",
     "Finding",
     "LevelOff",
+    "PairedComparison",
     "answer_questions",
     "compare_models",
     "correlate",

@@ -13,7 +13,7 @@ from railquake.findings.resampling import REPLICATES, UNKNOWN, Estimate, estimat
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Comparison", "compare_models", "pairs_of"]
+__all__ = ["PairedComparison", "compare_models", "pairs_of"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -22,7 +22,7 @@ FEWEST_PAIRS = 5
 
 
 @dataclass(frozen=True)
-class Comparison:
+class PairedComparison:
     """Ratio of a quantity under one model to that under another, over all pairs.
 
     Attributes
@@ -118,7 +118,7 @@ def compare_models(
     *,
     replicates: int = REPLICATES,
     seed: int = 0,
-) -> Comparison:
+) -> PairedComparison:
     """Ratio of a quantity under a model to that under a reference, in pairs.
 
     Parameters
@@ -134,12 +134,12 @@ def compare_models(
 
     Returns
     -------
-    Comparison
+    PairedComparison
         With ``missing`` told where there is nothing to compare.
     """
     from scipy.stats import binomtest
 
-    nothing = Comparison(quantity, model, reference)
+    nothing = PairedComparison(quantity, model, reference)
     if "model" not in table:
         return _because(nothing, "the study has no axis of models")
     for name in (model, reference):
@@ -168,14 +168,14 @@ def compare_models(
     def test(one: int, other: int) -> float:
         return float(binomtest(one, one + other).pvalue) if one + other else math.nan
 
-    return Comparison(
+    return PairedComparison(
         quantity, model, reference, ratio.size, len(names), left_out, median, mean,
         float(np.std(ratio, ddof=1)), above, below, ratio.size - above - below,
         test(up, down), up, down, test(above, below),
     )  # fmt: skip
 
 
-def _because(nothing: Comparison, reason: str) -> Comparison:
+def _because(nothing: PairedComparison, reason: str) -> PairedComparison:
     from dataclasses import replace
 
     return replace(nothing, missing=reason)

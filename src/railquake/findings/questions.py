@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from railquake.findings.comparison import Comparison, compare_models
+from railquake.findings.comparison import PairedComparison, compare_models
 from railquake.findings.correlation import Correlations, correlate
 from railquake.findings.lateral import LevelOff, force_ratio, level_off
 from railquake.findings.resampling import REPLICATES, Estimate, finished
@@ -87,16 +87,16 @@ class Evidence:
 
     correlations: Mapping[str, Correlations] = field(default_factory=dict)
     within_level: Mapping[str, Correlations] = field(default_factory=dict)
-    comparisons: Mapping[tuple[str, str, str], Comparison] = field(default_factory=dict)
+    comparisons: Mapping[tuple[str, str, str], PairedComparison] = field(default_factory=dict)
     level_offs: Mapping[str, LevelOff] = field(default_factory=dict)
     outcomes: Mapping[str, Outcomes] = field(default_factory=dict)
 
-    def ratio(self, quantity: str, model: str, reference: str) -> Comparison:
+    def ratio(self, quantity: str, model: str, reference: str) -> PairedComparison:
         """A comparison, or one that says why it is missing."""
         known = self.comparisons.get((quantity, model, reference))
         if known is not None:
             return known
-        return Comparison(quantity, model, reference, missing="not compared")
+        return PairedComparison(quantity, model, reference, missing="not compared")
 
 
 @dataclass(frozen=True)
@@ -249,7 +249,7 @@ def chance(p: float) -> str:
     return "p < 0.001" if p < 0.001 else f"p = {p:.3f}" if p < 0.1 else f"p = {p:.2f}"
 
 
-def _direction(found: Comparison) -> int:
+def _direction(found: PairedComparison) -> int:
     """1 up, -1 down, 0 not to be told: by the interval of the median, and the sign test."""
     if found.missing or not math.isfinite(found.p_value) or found.p_value >= SIGNIFICANT:
         return 0
@@ -258,14 +258,14 @@ def _direction(found: Comparison) -> int:
     return -1 if found.median.below(1.0) else 0
 
 
-def _ratio_words(found: Comparison) -> str:
+def _ratio_words(found: PairedComparison) -> str:
     """The ratio with its interval and sign test."""
     if found.missing:
         return found.missing
     return f"{interval(found.median)} times, {_split(found)}"
 
 
-def _split(found: Comparison) -> str:
+def _split(found: PairedComparison) -> str:
     """For how many records it is higher, or lower, and the sign test."""
     most = max(found.records_above, found.records_below)
     way = "higher" if found.records_above >= found.records_below else "lower"

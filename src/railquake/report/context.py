@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
     from railquake.study import StudyResults
 
-__all__ = ["LOOKS", "Context", "Look", "Section", "Table", "Text"]
+__all__ = ["LOOKS", "Context", "Look", "ReportSection", "Table", "Text"]
 
 REPLICATES = 500
 COLOURS = (BLUE, RED, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
@@ -68,7 +68,7 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Section:
+class ReportSection:
     """A part of the report.
 
     Parameters

@@ -16,7 +16,7 @@ from railquake.fragility import (
     outcome,
 )
 from railquake.report.chart import Band, Chart, Layer, Line, Panel, Points
-from railquake.report.context import Context, Section, Table, Text
+from railquake.report.context import Context, ReportSection, Table, Text
 
 __all__ = ["curves_of", "section"]
 
@@ -46,7 +46,7 @@ def curves_of(context: Context) -> dict[tuple[str, str], Fragility]:
     return found
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """Curves with bands, their parameters, and which measure fits best."""
     curves = curves_of(context)
     blocks: list[Any] = []
@@ -98,7 +98,7 @@ def section(context: Context) -> Section:
                 "note",
             )
         )
-    return Section("fragility", TITLE, tuple(blocks))
+    return ReportSection("fragility", TITLE, tuple(blocks))
 
 
 def _grid(curve: Fragility) -> np.ndarray:

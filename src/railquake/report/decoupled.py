@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from railquake.findings.comparison import pairs_of
 from railquake.findings.questions import DECOUPLED, ELASTIC, NONLINEAR, interval
 from railquake.report.chart import Chart, Panel, Rule
-from railquake.report.context import Section, Text
+from railquake.report.context import ReportSection, Text
 from railquake.report.layers import points
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ PANELS = (
 )
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """Each pair of runs that differ in the coupling alone."""
     models = set(context.models)
     present = [name for name, other in DECOUPLED.items() if {name, other} <= models]
@@ -36,7 +36,7 @@ def section(context: Context) -> Section:
             "decoupled-elastic, or coupled-nonlinear with decoupled-nonlinear, and this study does "
             "not have both."
         )
-        return Section("decoupled", TITLE, (Text(text, "note"),))
+        return ReportSection("decoupled", TITLE, (Text(text, "note"),))
     panels = []
     for quantity, factor, label, title in PANELS:
         layers = []
@@ -68,4 +68,4 @@ def section(context: Context) -> Section:
         "interval. A point’s command reruns the decoupled run."
     )
     chart = Chart("figures-8-9-decoupled", "Coupled against decoupled", caption, tuple(panels))
-    return Section("decoupled", TITLE, (chart,) if panels else (Text("No pairs.", "note"),))
+    return ReportSection("decoupled", TITLE, (chart,) if panels else (Text("No pairs.", "note"),))

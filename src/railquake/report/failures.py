@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from railquake.findings.resampling import FINISHED
-from railquake.report.context import Section, Table, Text
+from railquake.report.context import ReportSection, Table, Text
 
 if TYPE_CHECKING:
     from railquake.report.context import Context
@@ -16,13 +16,13 @@ TITLE = "Failures"
 MOST = 40
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """Runs that failed, diverged or did not converge, by reason."""
     table = context.table
     rows = table[~table["status"].isin(FINISHED)]
     if not len(rows):
         text = f"None: all {len(table):,} runs came to an end."
-        return Section("failures", TITLE, (Text(text),))
+        return ReportSection("failures", TITLE, (Text(text),))
     reasons = rows["error"].fillna("").astype(str) if "error" in rows else rows["status"] * 0
     listed = []
     groups = rows.assign(reason=reasons).groupby(["status", "reason"], sort=False)
@@ -37,7 +37,7 @@ def section(context: Context) -> Section:
     if len(listed) > MOST:
         caption += f" The first {MOST} of {len(listed)} different reasons are shown."
     head = ("status", "reason", "runs", "rows", "to look into the first")
-    return Section("failures", TITLE, (Table(head, tuple(listed[:MOST]), caption),))
+    return ReportSection("failures", TITLE, (Table(head, tuple(listed[:MOST]), caption),))
 
 
 def _meaning(status: str) -> str:

@@ -10,7 +10,7 @@ from railquake.errors import InputError
 from railquake.inputs.support import Pier
 from railquake.plots.style import BLACK, RED
 from railquake.report.chart import Chart, Line, Panel, Points, Rule
-from railquake.report.context import Section, Text
+from railquake.report.context import ReportSection, Text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,7 +23,7 @@ TITLE = "The plastic hinge: moment against rotation"
 MOST_POINTS = 2500  # of a loop in the page
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """Loops of the largest rotation, of medians, and of the run whose uplift gained most."""
     chosen = _telling(context)
     panels = []
@@ -32,10 +32,10 @@ def section(context: Context) -> Section:
             panels.append(_loop(context, row, what))
         except InputError as error:
             text = f"The runs cannot be made again: {error}."
-            return Section("hinges", TITLE, (Text(text, "note"),))
+            return ReportSection("hinges", TITLE, (Text(text, "note"),))
     if not panels:
         text = "No finished run has a plastic (Bouc-Wen) hinge: there are no loops to show."
-        return Section("hinges", TITLE, (Text(text, "note"),))
+        return ReportSection("hinges", TITLE, (Text(text, "note"),))
     caption = (
         "Moment of the plastic hinge at the pier’s foot against its rotation, in runs made again "
         "for this picture; the dotted line is its initial stiffness. Wide loops dissipate energy, "
@@ -43,7 +43,7 @@ def section(context: Context) -> Section:
         "lean over are a pier that has softened."
     )
     chart = Chart("hinge-loops", "Hinge loops of telling runs", caption, tuple(panels))
-    return Section("hinges", TITLE, (chart,))
+    return ReportSection("hinges", TITLE, (chart,))
 
 
 def _telling(context: Context) -> list[tuple[int, str]]:

@@ -10,7 +10,7 @@ import numpy as np
 from railquake.findings import force_ratio
 from railquake.findings.lateral import LevelOff
 from railquake.report.chart import Chart, Layer, Line, Panel, Rule
-from railquake.report.context import Look, Section, Text
+from railquake.report.context import Look, ReportSection, Text
 from railquake.report.layers import points
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ __all__ = ["section"]
 TITLE = "Lateral force of the train on the track (Figure 10)"
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """Filtered lateral force over friction times weight, coupled and decoupled."""
     ratio = dict(
         zip(context.table["row"], force_ratio(context.table, context.friction), strict=True)
@@ -51,7 +51,9 @@ def section(context: Context) -> Section:
         if layers:
             panels.append((title, layers))
     if not panels:
-        return Section("lateral", TITLE, (Text("No run has a lateral force to show.", "note"),))
+        return ReportSection(
+            "lateral", TITLE, (Text("No run has a lateral force to show.", "note"),)
+        )
     span = (min(every) / 1.15, max(every) * 1.15)
     drawn_panels = tuple(
         Panel(title, "PBA: peak acceleration of the track, m/s²",
@@ -68,7 +70,7 @@ def section(context: Context) -> Section:
     chart = Chart(
         "figure-10-lateral-force", "Lateral force, impacts filtered", caption, drawn_panels, 3
     )
-    return Section("lateral", TITLE, (chart,))
+    return ReportSection("lateral", TITLE, (chart,))
 
 
 def _two_lines(fit: LevelOff, x: np.ndarray, y: np.ndarray, look: Look) -> Line:

@@ -14,7 +14,7 @@ from string import Template
 from typing import Any
 
 from railquake.report.chart import MOST_POINTS, Chart, Line, Points
-from railquake.report.context import Section, Table, Text
+from railquake.report.context import ReportSection, Table, Text
 from railquake.report.interactive import figures_of
 from railquake.report.summary import Answers, Findings
 
@@ -26,13 +26,13 @@ OPEN_GLYPHS = {"circle": "○", "square": "□", "diamond": "◇", "cross": "✕
 STROKES = {"solid": "━", "dashed": "╍", "dotted": "┈"}
 
 
-def charts_of(sections: Sequence[Section]) -> list[Chart]:
+def charts_of(sections: Sequence[ReportSection]) -> list[Chart]:
     """All charts in their order."""
     return [block for section in sections for block in section.blocks if isinstance(block, Chart)]
 
 
 def page_html(
-    sections: Sequence[Section],
+    sections: Sequence[ReportSection],
     *,
     title: str,
     subtitle: str,
@@ -43,7 +43,7 @@ def page_html(
 
     Parameters
     ----------
-    sections : sequence of Section
+    sections : sequence of ReportSection
     title, subtitle, footer : str
         Plain text.
     command : (str, str)
@@ -99,7 +99,7 @@ def _json(value: Any) -> str:
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
-def _section(section: Section) -> str:
+def _section(section: ReportSection) -> str:
     blocks = "\n".join(_block(block) for block in section.blocks)
     return f'<section id="{section.key}">\n<h2>{_escape(section.title)}</h2>\n{blocks}\n</section>'
 

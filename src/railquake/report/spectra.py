@@ -11,7 +11,7 @@ from railquake.errors import InputError
 from railquake.inputs.motion import STANDARD_GRAVITY
 from railquake.plots.style import BLUE, GREY, RED
 from railquake.report.chart import Band, Chart, Layer, Line, Panel
-from railquake.report.context import Section, Text
+from railquake.report.context import ReportSection, Text
 
 if TYPE_CHECKING:
     from railquake.report.context import Context
@@ -24,7 +24,7 @@ MOST_LEVELS = 8
 PERIODS = np.geomspace(0.03, 4.0, 40)
 
 
-def section(context: Context, hazard: str | None = None) -> Section:
+def section(context: Context, hazard: str | None = None) -> ReportSection:
     """Spectra of each level, their mean and the target of that probability."""
     from railquake.suite import SUITES, Suite, read_hazard, suite_spectra
 
@@ -34,11 +34,13 @@ def section(context: Context, hazard: str | None = None) -> Section:
         text = (
             "The study has no suite of ground motions; its base case’s own motion shakes all runs."
         )
-        return Section("spectra", TITLE, (Text(text, "note"),))
+        return ReportSection("spectra", TITLE, (Text(text, "note"),))
     try:
         spectra = suite_spectra(suite, PERIODS)
     except InputError as error:
-        return Section("spectra", TITLE, (Text(f"The suite cannot be read: {error}.", "note"),))
+        return ReportSection(
+            "spectra", TITLE, (Text(f"The suite cannot be read: {error}.", "note"),)
+        )
     name = hazard or (BUILT_IN_HAZARD if suite.name in SUITES else None)
     known = read_hazard(name) if name else None
     levels = dict(study.levels) or {"": 1.0}
@@ -92,9 +94,9 @@ def section(context: Context, hazard: str | None = None) -> Section:
     title = "Spectra of the suite against the hazard"
     chart = Chart("suite-spectra", title, caption, tuple(panels))
     if known is None:
-        return Section("spectra", TITLE, (chart,))
+        return ReportSection("spectra", TITLE, (chart,))
     source = Text(f"The target’s source: {known.source}. {known.note}", "note")
-    return Section("spectra", TITLE, (chart, source))
+    return ReportSection("spectra", TITLE, (chart, source))
 
 
 def _probability(level: str) -> float | None:

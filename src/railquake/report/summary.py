@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from railquake.findings import Answer, Finding, answer_questions
-from railquake.report.context import Section, Text
+from railquake.report.context import ReportSection, Text
 
 if TYPE_CHECKING:
     from railquake.report.context import Context
@@ -28,7 +28,7 @@ class Findings:
     items: tuple[Finding, ...]
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """How the runs ended, and what they say together."""
     answers, findings = answer_questions(context.evidence)
     blocks: list[object] = [Text(_counts(context))]
@@ -41,7 +41,7 @@ def section(context: Context) -> Section:
                 "note",
             )
         )
-        return Section("summary", "Summary", tuple(blocks))
+        return ReportSection("summary", "Summary", tuple(blocks))
     blocks += [
         Answers(answers),
         Text("The paper’s findings, one by one", "heading"),
@@ -54,7 +54,7 @@ def section(context: Context) -> Section:
             "note",
         ),
     ]
-    return Section("summary", "Summary", tuple(blocks))
+    return ReportSection("summary", "Summary", tuple(blocks))
 
 
 def _counts(context: Context) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from railquake.errors import InputError
 from railquake.report.chart import Chart, Panel, Points, Rule
-from railquake.report.context import Section, Table, Text
+from railquake.report.context import ReportSection, Table, Text
 
 if TYPE_CHECKING:
     from railquake.report.context import Context
@@ -25,7 +25,7 @@ GAIN = 0.01
 FLOOR = 1e-8
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """Energy residuals of all runs, the time step's error, versions and hashes."""
     blocks: list[Any] = []
     chart = _residuals(context)
@@ -33,7 +33,7 @@ def section(context: Context) -> Section:
         blocks.append(chart)
     blocks += _time_step(context)
     blocks.append(_provenance(context))
-    return Section("trust", TITLE, tuple(blocks))
+    return ReportSection("trust", TITLE, tuple(blocks))
 
 
 def _residuals(context: Context) -> Chart | None:

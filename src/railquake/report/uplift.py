@@ -10,7 +10,7 @@ import numpy as np
 from railquake.findings import correlate
 from railquake.findings.questions import interval
 from railquake.report.chart import Chart, Layer, Line, Panel, Points, Rule
-from railquake.report.context import REPLICATES, Section, Text
+from railquake.report.context import REPLICATES, ReportSection, Text
 from railquake.report.layers import runs
 
 if TYPE_CHECKING:
@@ -25,13 +25,15 @@ NAMES = {
 }  # fmt: skip
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """Normalised uplift of each run, and which measure it goes with."""
     models = [m for m in context.models if not m.startswith("decoupled")] or context.models
     velocity = runs(context, models, "pbv_m_s", "uplift_ratio")
     acceleration = runs(context, models, "pba_m_s2", "uplift_ratio")
     if not acceleration and not velocity:
-        return Section("uplift", TITLE, (Text("No run has finished: nothing to show.", "note"),))
+        return ReportSection(
+            "uplift", TITLE, (Text("No run has finished: nothing to show.", "note"),)
+        )
     level = Rule("onset of slide-off", y=1.0)
     panels = []
     for layers, measure, label, title in (
@@ -68,7 +70,7 @@ def section(context: Context) -> Section:
     forest = _correlations(context, models)
     if forest is not None:
         blocks.append(forest)
-    return Section("uplift", TITLE, tuple(blocks))
+    return ReportSection("uplift", TITLE, tuple(blocks))
 
 
 def _fits(context: Context, models: list[str], measure: str) -> tuple[Line, ...]:

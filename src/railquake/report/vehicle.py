@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from railquake.report.context import Section, Table, Text
+from railquake.report.context import ReportSection, Table, Text
 
 if TYPE_CHECKING:
     from railquake.report.context import Context
@@ -19,7 +19,7 @@ PAPER = {
 }
 
 
-def section(context: Context) -> Section:
+def section(context: Context) -> ReportSection:
     """Natural frequencies with the wheelset held, beside the paper's."""
     from railquake.assembly import vehicle_matrices
     from railquake.physics.vehicle import fixed_wheelset_modes
@@ -27,7 +27,7 @@ def section(context: Context) -> Section:
 
     scenario = context.first_scenario
     if scenario is None:
-        return Section("vehicle", "The vehicle (Table 1)", (_gone,))
+        return ReportSection("vehicle", "The vehicle (Table 1)", (_gone,))
     matrices = vehicle_matrices(scenario.vehicle)
     frequencies, _ = fixed_wheelset_modes(matrices.mass, matrices.stiffness)
     labels = mode_labels(scenario.vehicle, matrices)
@@ -48,7 +48,7 @@ def section(context: Context) -> Section:
         + (", beside Table 1 of the paper" if ours else "")
         + f".{remark}"
     )
-    return Section("vehicle", "The vehicle (Table 1)", (Table(head, tuple(rows), caption),))
+    return ReportSection("vehicle", "The vehicle (Table 1)", (Table(head, tuple(rows), caption),))
 
 
 _gone = Text("The scenarios cannot be made any more: a file they name is missing.", "note")

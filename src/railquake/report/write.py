@@ -25,7 +25,7 @@ from railquake.report import (
     uplift,
     vehicle,
 )
-from railquake.report.context import Context, Section
+from railquake.report.context import Context, ReportSection
 from railquake.report.page import charts_of, page_html
 from railquake.report.pictures import csv_text, write_png
 
@@ -98,7 +98,7 @@ def write_report(
     return page
 
 
-def _sections(context: Context, hazard: str | None) -> list[Section]:
+def _sections(context: Context, hazard: str | None) -> list[ReportSection]:
     return [
         summary.section(context),
         vehicle.section(context),
@@ -139,7 +139,7 @@ def _footer() -> str:
     )
 
 
-def _write(page: Path, text: str, sections: list[Section], context: Context) -> None:
+def _write(page: Path, text: str, sections: list[ReportSection], context: Context) -> None:
     """Write all under temporary names, then move; the page last."""
     mark = uuid.uuid4().hex[:8]
     part = page.with_name(f".{page.name}.{mark}.part")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from railquake.report.chart import MOST_POINTS, Band, Chart, Line, Panel, Points, Rule, limits
-from railquake.report.context import Section, Table, Text
+from railquake.report.context import ReportSection, Table, Text
 from railquake.report.interactive import figures_of
 from railquake.report.page import page_html
 from railquake.report.pictures import csv_text, write_png
@@ -54,7 +54,7 @@ def test_texts_in_labels_are_escaped_for_plotly():
 
 def test_texts_in_the_page_are_escaped_everywhere():
     drawn = Chart("name", NASTY, NASTY, (Panel(NASTY, NASTY, NASTY, (points(label=NASTY),)),))
-    section = Section("key", NASTY, (Text(NASTY), Table((NASTY,), ((NASTY,),), NASTY), drawn))
+    section = ReportSection("key", NASTY, (Text(NASTY), Table((NASTY,), ((NASTY,),), NASTY), drawn))
     page = page_html([section], title=NASTY, subtitle=NASTY, footer=NASTY, command=(NASTY, NASTY))
     assert "<b onclick" not in page
     assert page.count("</script>") == 3  # those of the page itself
