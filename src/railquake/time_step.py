@@ -64,7 +64,7 @@ class TimeStep:
         """The scenario with this time step; as it is where it names one itself."""
         if scenario.solver.dt != "auto":
             return scenario
-        return _with_step(scenario, self.of(scenario))
+        return scenario.with_step(self.of(scenario))
 
     @property
     def text(self) -> str:
@@ -107,9 +107,9 @@ def search_time_step(
     if tolerance is None:
         tolerance = min(scenario.solver.time_step_tolerance for scenario in scenarios)
     error = math.inf
-    coarse = run([_with_step(scenario, _step(scenario, 0)) for scenario in scenarios])
+    coarse = run([scenario.with_step(_step(scenario, 0)) for scenario in scenarios])
     for halvings in range(HALVINGS):
-        fine = run([_with_step(scenario, _step(scenario, halvings + 1)) for scenario in scenarios])
+        fine = run([scenario.with_step(_step(scenario, halvings + 1)) for scenario in scenarios])
         error = 2.0 * max(_difference(a, b) for a, b in zip(coarse, fine, strict=True))
         if error <= tolerance:
             return TimeStep(halvings, float(error), tolerance, len(scenarios))
@@ -135,8 +135,3 @@ def _step(scenario: Scenario, halvings: int) -> float:
     longest = min(SAFE_SHARE * critical_time_step(scenario), LONGEST) * 0.5**halvings
     frame = scenario.solver.history_step
     return frame / math.ceil(frame / longest * (1.0 - 1e-9))
-
-
-def _with_step(scenario: Scenario, step: float) -> Scenario:
-    solver = scenario.solver.model_copy(update={"dt": step})
-    return scenario.model_copy(update={"solver": solver})

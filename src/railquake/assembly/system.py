@@ -54,7 +54,7 @@ Laws = dict["Callable[..., Any]", "Callable[..., Any]"]
 GRAVITY = 9.80665  # m/s2
 UNKNOWN_DEGRADATION = statics.UNKNOWN_DEGRADATION
 MOST_STEPS = 1e10  # of a run; about an hour
-SHORT_STEP = 1e-9  # s
+SHORT_STEP = 1e-9  # s; below any critical one
 SHIFT_LIMIT = 0.127  # lateral shift that counts as derailed, m (5 in)
 ROLL_LIMIT = math.pi / 4.0  # relative roll that counts as overturned
 
@@ -203,14 +203,8 @@ def critical_time_step(scenario: Scenario) -> float:
     if isinstance(scenario.support, PrescribedTrack):
         track = scenario.support.track_motion()
         first = np.array([track.y[0], track.z[0], track.roll[0]])
-        return _assemble_at_rest(_with_short_step(scenario), first).critical_dt
-    return _remembered(_with_short_step(scenario)).critical_dt
-
-
-def _with_short_step(scenario: Scenario) -> Scenario:
-    """With a step below any critical one."""
-    solver = scenario.solver.model_copy(update={"dt": SHORT_STEP})
-    return scenario.model_copy(update={"solver": solver})
+        return _assemble_at_rest(scenario.with_step(SHORT_STEP), first).critical_dt
+    return _remembered(scenario.with_step(SHORT_STEP)).critical_dt
 
 
 class _AtRest(NamedTuple):

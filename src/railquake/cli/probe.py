@@ -15,7 +15,7 @@ from railquake.cli.shared import (
     print_facts,
     print_json,
     read_column,
-    write_picture,
+    write_file,
     write_text,
 )
 from railquake.errors import InputError
@@ -74,7 +74,7 @@ def probe_hinge(
     if picture is not None:
         from railquake.plots import write_hinge_picture
 
-        write_picture(picture, lambda at: write_hinge_picture(x, rows[:, 0], at))
+        write_file(picture, lambda at: write_hinge_picture(x, rows[:, 0], at))
     if as_json:
         print_json(
             {"x": x.tolist(), "moment": rows[:, 0].tolist(), "z": rows[:, 1].tolist(),
@@ -126,7 +126,7 @@ def probe_motion(
     if picture is not None:
         from railquake.plots import write_motion_picture
 
-        write_picture(picture, lambda path: write_motion_picture(motion, path))
+        write_file(picture, lambda path: write_motion_picture(motion, path))
     facts = {
         "name": motion.name,
         "dt_s": motion.dt,
@@ -189,7 +189,7 @@ def probe_contact(
     if picture is not None:
         from railquake.plots.contact import write_contact_picture
 
-        write_picture(picture, lambda path: write_contact_picture(pair, standing, path))
+        write_file(picture, lambda path: write_contact_picture(pair, standing, path))
     if as_json:
         print_json([vars(patch) for patch in standing.patches])
         return
@@ -251,7 +251,7 @@ def probe_creep(
     if picture is not None:
         from railquake.plots import write_creep_picture
 
-        write_picture(picture, lambda path: write_creep_picture(slope, mu * load, path))
+        write_file(picture, lambda path: write_creep_picture(slope, mu * load, path))
     if as_json:
         print_json({"lateral_force_n": force, "limit_n": mu * load, "f22_n": slope, "law": law})
         return

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from railquake.cli.application import app
-from railquake.cli.shared import Json, print_json, progress_bar, write_picture, write_text
+from railquake.cli.shared import Json, print_json, progress_bar, write_file, write_text
 from railquake.errors import InputError
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def select(
 
         write_suite_picture(spectra, path, target, periods, chosen.suite.name)
 
-    write_picture(picture, draw)
+    write_file(picture, draw)
     if as_json:
         print_json(_facts(chosen, manifest, picture))
         return

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from railquake.errors import InputError
+from railquake.folders import reason
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, ProgressColumn
 
 __all__ = [
     "Case",
@@ -22,7 +26,8 @@ __all__ = [
     "print_json",
     "progress_bar",
     "read_column",
-    "write_picture",
+    "terminal_bar",
+    "write_file",
     "write_text",
 ]
 
@@ -42,8 +47,13 @@ Picture = Annotated[Path | None, typer.Option("--picture", help="Picture (PNG) t
 
 
 @contextmanager
-def progress_bar() -> Iterator[tuple[Callable[[int, int], None] | None, Callable[[str], None]]]:
-    """A progress bar on a terminal's standard error, and a way to say something there."""
+def terminal_bar(
+    columns: Callable[[], Sequence[str | ProgressColumn]],
+) -> Iterator[tuple[Progress | None, Callable[[str], None]]]:
+    """A progress bar on a terminal's standard error, None elsewhere, and a way to say something.
+
+    ``columns`` makes the bar's columns; called on a terminal only, since rich takes long to import.
+    """
 
     def say(text: str) -> None:
         typer.echo(f"railquake: {text}", err=True)
@@ -52,20 +62,27 @@ def progress_bar() -> Iterator[tuple[Callable[[int, int], None] | None, Callable
         yield None, say
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress
 
-    with Progress(
-        TextColumn("{task.percentage:3.0f} %"),
-        BarColumn(),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-        transient=True,
-    ) as bar:
+    with Progress(*columns(), console=Console(stderr=True), transient=True) as bar:
+        yield bar, lambda text: bar.console.print(f"railquake: {text}", markup=False)
+
+
+@contextmanager
+def progress_bar() -> Iterator[tuple[Callable[[int, int], None] | None, Callable[[str], None]]]:
+    """A bar that is told the parts done and all parts, and a way to say something."""
+
+    def columns() -> Sequence[str | ProgressColumn]:
+        from rich.progress import BarColumn, TimeRemainingColumn
+
+        return "{task.percentage:3.0f} %", BarColumn(), TimeRemainingColumn()
+
+    with terminal_bar(columns) as (bar, say):
+        if bar is None:
+            yield None, say
+            return
         task = bar.add_task("run", total=None)
-        yield (
-            lambda done, total: bar.update(task, completed=done, total=total),
-            lambda text: bar.console.print(f"railquake: {text}"),
-        )
+        yield lambda done, total: bar.update(task, completed=done, total=total), say
 
 
 def print_facts(facts: dict[str, Any]) -> None:
@@ -117,28 +134,21 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def write_picture(path: Path, write: Callable[[Path], Any]) -> None:
-    """Write a picture under a temporary name and move it into its place."""
+def write_file(path: Path, write: Callable[[Path], Any]) -> None:
+    """Write a file under a temporary name and move it into its place."""
     part = path.with_name(f".{path.name}.part")
     try:
         write(part)
         part.replace(path)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise InputError(f"{path}: cannot be written: {reason(error)}") from None
     finally:
         part.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file under a temporary name and move it into its place."""
-    part = path.with_name(f".{path.name}.part")
-    try:
-        part.write_text(text, encoding="utf-8")
-        part.replace(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
-    finally:
-        part.unlink(missing_ok=True)
+    """`write_file` for a text."""
+    write_file(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 
 def print_json(value: Any) -> None:

@@ -16,7 +16,7 @@ from railquake.cli.shared import (
     print_facts,
     print_json,
     progress_bar,
-    write_picture,
+    write_file,
 )
 from railquake.errors import InputError
 
@@ -199,7 +199,7 @@ def modes(
     if out is not None:
         from railquake.plots import write_modes_picture
 
-        write_picture(out, lambda path: write_modes_picture(car, labels, path))
+        write_file(out, lambda path: write_modes_picture(car, labels, path))
     if as_json:
         print_json({"frequencies_hz": frequencies.tolist(), "labels": labels})
         return

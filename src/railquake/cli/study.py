@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,11 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.cli.application import app
-from railquake.cli.shared import Json, Out
+from railquake.cli.shared import Json, Out, terminal_bar
 from railquake.cli.status import Stopped
 
 if TYPE_CHECKING:
     import pandas as pd
+    from rich.progress import ProgressColumn
 
     from railquake.study import Study, StudyProgress
 
@@ -128,23 +128,15 @@ def _listed(rows: list[int]) -> str:
 
 @contextmanager
 def _progress() -> Iterator[tuple[Callable[[StudyProgress], None] | None, Callable[[str], None]]]:
-    def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
+    def columns() -> Sequence[str | ProgressColumn]:
+        from rich.progress import BarColumn, MofNCompleteColumn
 
-    if not sys.stderr.isatty():
-        yield None, say
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+        return MofNCompleteColumn(), "runs", BarColumn(), "{task.fields[rate]}"
 
-    with Progress(
-        MofNCompleteColumn(),
-        TextColumn("runs"),
-        BarColumn(),
-        TextColumn("{task.fields[rate]}"),
-        console=Console(stderr=True),
-        transient=True,
-    ) as bar:
+    with terminal_bar(columns) as (bar, say):
+        if bar is None:
+            yield None, say
+            return
         task = bar.add_task("study", total=None, rate="")
 
         def show(now: StudyProgress) -> None:
@@ -153,7 +145,7 @@ def _progress() -> Iterator[tuple[Callable[[StudyProgress], None] | None, Callab
                 rate += f", {_clock(now.remaining_s)} left"
             bar.update(task, completed=now.done, total=now.total, rate=rate)
 
-        yield show, lambda text: bar.console.print(f"railquake: {text}", markup=False)
+        yield show, say
 
 
 def _clock(seconds: float) -> str:
