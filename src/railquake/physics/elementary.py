@@ -13,6 +13,7 @@ __all__ = [
     "exponential_polynomial",
     "float_of",
     "floor_of",
+    "larger_of",
     "power",
     "power_polynomial",
     "sin_cos",
@@ -55,6 +56,15 @@ def float_of(bits: int) -> float:
 def floor_of(x: float) -> float:
     """Largest whole number up to x, as a double."""
     return float(math.floor(x))
+
+
+def larger_of(a: float, b: float) -> float:
+    """The larger of two; b if they cannot be compared.
+
+    Where `max` is to be stored in the place of one of the two, a compiler leaves out the store that
+    changes nothing, and for many abreast that makes slow stores of single lanes.
+    """
+    return a if a > b else b
 
 
 def exponential_2(y: float) -> float:

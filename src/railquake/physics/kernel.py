@@ -237,7 +237,7 @@ def _finish(function: Law, target: Target) -> Law:
         return function
     import numba
 
-    if function.__name__ in ("bits_of", "float_of", "floor_of"):
+    if function.__name__ in _instructions():
         return _instructions()[function.__name__]
 
     # without counting references to arrays ("_nrt"): a law neither makes nor keeps any
@@ -254,7 +254,7 @@ def _finish(function: Law, target: Target) -> Law:
 
 @cache
 def _instructions() -> dict[str, Law]:
-    """Compiled counterparts of `elementary.bits_of`, `float_of` and `floor_of`."""
+    """Compiled counterparts of `elementary.bits_of`, `float_of`, `floor_of` and `larger_of`."""
     from llvmlite import ir
     from numba.core import types
     from numba.extending import intrinsic
@@ -277,8 +277,21 @@ def _instructions() -> dict[str, Law]:
 
         return types.float64(types.float64), generate
 
+    double = ir.DoubleType()
+
+    def larger_typed(typing_context: Any, a: Any, b: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            largest = builder.module.declare_intrinsic(
+                "llvm.maxnum", [double], ir.FunctionType(double, [double, double])
+            )
+            # one instruction, whatever it gives for NaN
+            return builder.call(largest, arguments, fastmath=("nnan",))
+
+        return types.float64(types.float64, types.float64), generate
+
     return {
         "floor_of": intrinsic(floor_typed),
+        "larger_of": intrinsic(larger_typed),
         "bits_of": cast(types.float64, types.int64),
         "float_of": cast(types.int64, types.float64),
     }

@@ -13,7 +13,7 @@ import numpy as np
 from railquake.physics import constant, state
 from railquake.physics.contact import normal_force, onset_hysteresis
 from railquake.physics.creep import reduction_shen_hedrick_elkins
-from railquake.physics.elementary import floor_of, sin_cos
+from railquake.physics.elementary import floor_of, larger_of, sin_cos
 from railquake.physics.pier import move_structure, move_track, refresh_hinge
 from railquake.physics.profiles import (
     FIELDS,
@@ -556,7 +556,7 @@ def measure(S: Array, Q: Array, lane: int) -> None:
 
 def raise_peak(S: Array, row: int, value: float, lane: int) -> None:
     """Keep the largest absolute value."""
-    S[row, lane] = max(S[row, lane], abs(value))
+    S[row, lane] = larger_of(S[row, lane], abs(value))
 
 
 def wheels_off(S: Array, lane: int) -> tuple[float, float]:
