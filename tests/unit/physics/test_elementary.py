@@ -2,11 +2,12 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from railquake.physics import elementary
+from railquake.physics import elementary, march
 from railquake.physics.kernel import SCALAR, bind
 
 
@@ -35,3 +36,11 @@ def test_bits_compiled_are_the_bits_of_the_plain_functions():
     compiled = bind(elementary.power_polynomial, SCALAR).call
     for x in (1e-9, 0.3, 1.0, 7.5):
         assert compiled(x, 1.28) == pytest.approx(elementary.power_polynomial(x, 1.28), rel=1e-15)
+
+
+@given(st.floats(0.0, 1e300), st.floats(-1e300, 1e300))
+def test_a_peak_is_raised_alike_compiled_and_plain(peak, value):
+    for raise_peak in (march.raise_peak, bind(march.raise_peak, SCALAR).call):
+        S = np.array([[peak]])
+        raise_peak(S, 0, value, 0)
+        assert S[0, 0] == max(peak, abs(value))
