@@ -281,9 +281,16 @@ def test_results_cannot_go_where_a_file_is(case, tmp_path, capsys):
     assert "taken" in refused(capsys, "run", case, "--out", tmp_path / "taken")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def listens(process: subprocess.Popen[str]) -> bool:
+    """Whether a process has put its own answer to a request to terminate in place."""
+    known = Path(f"/proc/{process.pid}/status").read_text()
+    caught = next(line for line in known.splitlines() if line.startswith("SigCgt"))
+    return bool(int(caught.split()[1], 16) >> (signal.SIGTERM - 1) & 1)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads what signals a process listens to")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("after", [1.5, 3.0])
+@pytest.mark.parametrize("after", [0.0, 2.0])
 def test_stopped_run_leaves_nothing_behind(tmp_path, number, after):
     case = tmp_path / "case.toml"
     case.write_text(CASE.replace("2 s", "600 s"))
@@ -294,6 +301,8 @@ def test_stopped_run_leaves_nothing_behind(tmp_path, number, after):
         text=True,
         env=os.environ,
     )
+    while process.poll() is None and not listens(process):
+        time.sleep(0.01)  # a busy machine takes seconds to start Python
     time.sleep(after)
     process.send_signal(number)
     printed, complaint = process.communicate(timeout=60)
@@ -302,12 +311,6 @@ def test_stopped_run_leaves_nothing_behind(tmp_path, number, after):
     lines = [line for line in complaint.splitlines() if "compiling" not in line]
     assert lines == ["railquake: stopped; nothing is half-written"]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["case.toml"]
-
-
-def test_signals_are_given_back(capsys):
-    before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
-    assert main(["presets"]) == 0
-    assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
 
 
 def test_run_that_diverged_says_so_loudly(case, tmp_path, capsys, monkeypatch):

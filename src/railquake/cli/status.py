@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import gc
 import os
-import signal
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
-from typing import Any, NoReturn
+from typing import Any
 
 import typer
 
 from railquake.cli.application import app
 from railquake.errors import InputError
+from railquake.stopping import STOPPED, STOPPED_TEXT
 
 __all__ = ["Stopped", "main"]
 
@@ -21,8 +20,6 @@ __all__ = ["Stopped", "main"]
 USAGE_ERROR: type[Exception] = next(
     kind for kind in typer.BadParameter.__mro__ if kind.__name__ == "ClickException"
 )
-
-STOPPED = 130  # exit status after Ctrl-C
 
 
 class Stopped(Exception):
@@ -43,26 +40,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0; 2 after a wrong input, with one line on standard error; 130 after Ctrl-C or a request
         to terminate.
     """
-    complaints = sys.unraisablehook
-
-    def stop(*_: object) -> NoReturn:
-        # what the compiler leaves half done, its destructors must not report
-        sys.unraisablehook = lambda _: None
-        raise KeyboardInterrupt
-
-    former = {}
-    with suppress(ValueError):  # not in the main thread
-        for number in (signal.SIGINT, signal.SIGTERM):
-            if signal.getsignal(number) != signal.SIG_IGN:  # as nohup asks for
-                former[number] = signal.signal(number, stop)
-    try:
-        return _status(arguments)
-    finally:
-        sys.unraisablehook = complaints
-        for number, handler in former.items():
-            signal.signal(number, handler)
-        if arguments is None:
-            gc.freeze()  # the process ends: looking for garbage once more takes half a second
+    status = _status(arguments)
+    if arguments is None:
+        gc.freeze()  # the process ends: looking for garbage once more takes half a second
+    return status
 
 
 def _status(arguments: Sequence[str] | None) -> int:
@@ -88,7 +69,7 @@ def _status(arguments: Sequence[str] | None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     if status == STOPPED:  # typer turns Ctrl-C into this
-        return _complain("stopped; nothing is half-written", STOPPED)
+        return _complain(STOPPED_TEXT, STOPPED)
     return status if isinstance(status, int) else 0
 
 
