@@ -5,6 +5,8 @@ The simulator is chosen when the process starts (NUMBA_ENABLE_CUDASIM=1), so it 
 
 import json
 import sys
+import tempfile
+from pathlib import Path
 
 import numpy as np
 
@@ -71,6 +73,28 @@ def shared_motions():
     }
 
 
+def studies():
+    """A study of the same laws and lengths, on the GPU and on the CPU."""
+    study = rq.Study.from_dict(
+        {
+            "base": {
+                "vehicle": {"preset": "bart"},
+                "support": {"preset": "bart-berkeley"},
+                "wheelrail": {"preset": "bart"},
+                "motion": {"acceleration": list(pulse(0.08, 15.0, 0.005, 0.03)), "dt": DT},
+                "solver": {"dt": "1e-4 s"},
+            },
+            "axes": {"support.hinge": ["elastic", "bouc-wen"], "motion.scale": [1.0, -0.5]},
+        }
+    )
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for where in ("cpu", "cuda"):
+            table = study.run(Path(folder) / where, device=where)
+            found[where] = table[["status", "pbd_m", "wheel_load_peak_n"]].to_dict("list")
+    return found
+
+
 if __name__ == "__main__":
     # the rows leave this loss out
     lockstep.assess = lambda response: {**assess(response), "impact_j": response.audit.impact}
@@ -81,4 +105,5 @@ if __name__ == "__main__":
     answer = {"cpu": rows("cpu"), "cuda": rows("cuda")}
     device.DeviceLanes.most = 3
     answer["motions"] = shared_motions()
+    answer["studies"] = studies()
     json.dump(answer, sys.stdout)

@@ -12,7 +12,7 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
@@ -26,15 +26,24 @@ from railquake.physics import state
 from railquake.physics.energy import audit
 from railquake.physics.kernel import lockstep_target
 from railquake.response import Response
-from railquake.simulation import settled, simulate
+from railquake.simulation import COMPILING, settled, simulate
 from railquake.time_step import TimeStep, search_time_step
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
 
-__all__ = ["choose_time_step", "group_of", "prepare", "run_here", "simulate_many"]
+__all__ = [
+    "Device",
+    "choose_time_step",
+    "group_of",
+    "lanes_on",
+    "prepare",
+    "run_here",
+    "simulate_many",
+]
 
 Row = dict[str, Any]
+Device = Literal["cpu", "cuda"]
 REFRESH_STEPS = 10  # of the hinge's degradation
 REFRESH_TIME = 1e-4  # s; with longer time steps it is refreshed after fewer of them
 GPU_THREADS = 2
@@ -48,8 +57,8 @@ def simulate_many(
     threads: int | None = None,
     refresh_steps: int = REFRESH_STEPS,
     hinge_solve: Literal["linearised", "newton"] = "linearised",
-    device: Literal["cpu", "cuda"] = "cpu",
-) -> Iterator[tuple[int, Row]]:
+    device: Device = "cpu",
+) -> Generator[tuple[int, Row]]:
     """Run many scenarios; any may differ from any other.
 
     Parameters
@@ -75,7 +84,7 @@ def simulate_many(
         Place of the scenario among ``scenarios``; results come as they are ready.
     row : dict
         What `assess` gives.  A scenario that cannot be run has the status ``failed`` and its
-        ``error``.
+        ``error``, which begins with ``unexpected:`` where nobody foresaw it.
 
     Raises
     ------
@@ -89,8 +98,7 @@ def simulate_many(
     its degradation extrapolated between evaluations.  The grid method of contact is run by
     `simulate` itself.
     """
-    if device not in ("cpu", "cuda"):
-        raise InputError(f'device: must be cpu or cuda, found "{device}"')
+    make_lanes = lanes_on(device)
     count = threads
     if count is None:
         count = GPU_THREADS if device == "cuda" else os.cpu_count() or 1
@@ -100,9 +108,6 @@ def simulate_many(
         raise InputError(f"refresh_steps: must be at least 1, found {refresh_steps}")
     if hinge_solve not in ("linearised", "newton"):
         raise InputError(f'hinge_solve: must be linearised or newton, found "{hinge_solve}"')
-    if device == "cuda":
-        require_device()
-    make_lanes: MakeLanes = DeviceLanes if device == "cuda" else _Abreast
     singly = hinge_solve == "newton"
     return _results(
         enumerate(scenarios),
@@ -148,7 +153,7 @@ def _results(
     scenarios: Iterator[tuple[int, Scenario]],
     threads: int,
     run: Callable[[Iterator[tuple[int, Scenario]], threading.Event], Iterator[tuple[int, Row]]],
-) -> Iterator[tuple[int, Row]]:
+) -> Generator[tuple[int, Row]]:
     found: queue.Queue[tuple[int, Row] | BaseException | None] = queue.Queue(maxsize=256)
     stop = threading.Event()
     drawing = threading.Lock()
@@ -197,6 +202,8 @@ class Lanes(Protocol):
     """Where the systems of a batch march, each in a lane of its own."""
 
     most: int
+    compiling: str | None
+    """What the first march must wait for, in words."""
 
     @property
     def is_full(self) -> bool:
@@ -218,7 +225,7 @@ class Lanes(Protocol):
         """State of a lane, shape (state rows, 1)."""
 
 
-MakeLanes = Callable[["System", int], Lanes]  # for systems like this one, and its refresh steps
+MakeLanes = Callable[[System, int], Lanes]  # for systems like this one, and its refresh steps
 
 
 class _Abreast:
@@ -230,6 +237,7 @@ class _Abreast:
         lanes = self.most = lockstep_target().lanes
         self.refresh_steps = refresh_steps
         self.kernel = system.kernel(lockstep_target())
+        self.compiling = None if self.kernel.is_cached else COMPILING
         self.geometry = system.geometry
         self.idle = system.start.copy()
         self.idle[state.ON_TRACK] = 0.0
@@ -291,6 +299,22 @@ class _Abreast:
         return self.states[:, lane : lane + 1]
 
 
+def lanes_on(device: str) -> MakeLanes:
+    """Where batches march.
+
+    Raises
+    ------
+    InputError
+        If the device is neither ``cpu`` nor ``cuda``, or there is no GPU to be used.
+    """
+    if device not in ("cpu", "cuda"):
+        raise InputError(f'device: must be cpu or cuda, found "{device}"')
+    if device == "cpu":
+        return _Abreast
+    require_device()
+    return DeviceLanes
+
+
 def run_here(
     scenarios: Iterator[tuple[int, Scenario]],
     stop: threading.Event,
@@ -320,11 +344,12 @@ def run_here(
         try:
             settled_scenario, choice = settled(scenario)
             system = assemble(settled_scenario)
-        except InputError as error:
-            yield index, {"status": "failed", "error": str(error)}
-            continue
-        if singly or scenario.solver.contact == "grid":
-            yield index, assess(replace(simulate(system), time_step=choice))
+            by_itself = singly or scenario.solver.contact == "grid"
+            row = assess(replace(simulate(system), time_step=choice)) if by_itself else None
+        except Exception as error:  # the others shall not suffer
+            row = _failed(error)
+        if row is not None:
+            yield index, row
             continue
         key = group_of(system)
         if key not in batches:
@@ -349,7 +374,7 @@ def group_of(system: System) -> Any:
     return (
         laws,
         system.vehicle.mass.shape,
-        system.block,
+        system.vehicle.block,
         system.dt,
         system.frame_steps,
         system.drive.shape[1],
@@ -357,9 +382,12 @@ def group_of(system: System) -> Any:
     )
 
 
-def prepare(system: System) -> None:
-    """Compile or load the kernel that many scenarios of this group take."""
-    _Batch(system, REFRESH_STEPS).advance()
+def prepare(system: System, make_lanes: MakeLanes, notify: Callable[[str], None]) -> None:
+    """Compile or load the kernel that many scenarios of this group take; say if it takes long."""
+    batch = _Batch(system, REFRESH_STEPS, make_lanes)
+    if batch.lanes.compiling is not None:
+        notify(batch.lanes.compiling)
+    batch.advance()
 
 
 @dataclass
@@ -420,16 +448,26 @@ class _Batch:
             yield from self.advance()
 
 
+def _failed(error: Exception) -> Row:
+    text = str(error)
+    if not isinstance(error, InputError):
+        text = f"unexpected: {' '.join(f'{type(error).__name__}: {error}'.split())}"
+    return {"status": "failed", "error": text}
+
+
 def _row(job: _Job, end: np.ndarray[Any, np.dtype[np.float64]], frames: int) -> Row:
     system = job.system
-    return assess(
-        Response(
-            system=system,
-            end=end,
-            frames=np.empty((frames + 1, 0)),
-            audit=audit(system.start, end, system.constants),
-            wall_s=time.perf_counter() - job.begin,
-            march_s=job.march_s,
-            time_step=job.choice,
+    try:
+        return assess(
+            Response(
+                system=system,
+                end=end,
+                frames=np.empty((frames + 1, 0)),
+                audit=audit(system.start, end, system.constants),
+                wall_s=time.perf_counter() - job.begin,
+                march_s=job.march_s,
+                time_step=job.choice,
+            )
         )
-    )
+    except Exception as error:
+        return _failed(error)

@@ -67,6 +67,14 @@ def test_a_motion_is_sent_once_and_its_room_is_used_again(simulated):
     assert motions["still_there"]
 
 
+def test_a_study_on_the_simulated_gpu_is_that_of_the_cpu(simulated):
+    table, known = simulated["studies"]["cuda"], simulated["studies"]["cpu"]
+    assert table["status"] == known["status"] and set(known["status"]) == {"safe"}
+    for key in ("pbd_m", "wheel_load_peak_n"):
+        assert len(set(known[key])) == 4
+        assert table[key] == pytest.approx(known[key], rel=1e-9)
+
+
 def test_the_kernel_compiles_for_a_gpu_that_is_not_there():
     system = rq.assemble(rq.scenario(synthetic={"seed": 3, "duration": "6 s"}))
     lanes = np.zeros(1, dtype=np.int64)

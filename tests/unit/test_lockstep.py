@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import railquake as rq
+from railquake import lockstep
 from railquake.assembly.system import System
 from railquake.physics.kernel import lockstep_target, wide_register
 
@@ -72,6 +73,25 @@ def test_an_impossible_scenario_is_a_row_and_the_others_finish():
     assert rows[1]["status"] == "failed"
     assert "solver.dt" in rows[1]["error"]
     assert rows[0]["status"] == rows[2]["status"] == "safe"
+
+
+@pytest.mark.parametrize("stage", ["assemble", "assess"])
+def test_an_unforeseen_fault_is_a_row_and_the_others_finish(monkeypatch, stage):
+    real = getattr(lockstep, stage)
+    met = []
+
+    def faulty(given):
+        met.append(given)
+        if len(met) == 2:
+            raise ZeroDivisionError("nobody\nforesaw this")
+        return real(given)
+
+    monkeypatch.setattr(lockstep, stage, faulty)
+    rows = dict(rq.simulate_many(mixed()[:3], threads=1))
+    status = [row["status"] for row in rows.values()]
+    assert sorted(status) == ["failed", "safe", "safe"]
+    error = next(row["error"] for row in rows.values() if row["status"] == "failed")
+    assert error == "unexpected: ZeroDivisionError: nobody foresaw this"
 
 
 def test_the_grid_method_is_run_by_the_single_engine():

@@ -36,7 +36,7 @@ from railquake.physics import (
 from railquake.physics.contact import calibrated_hysteresis, printed_hysteresis
 from railquake.physics.kernel import CUDA, PYTHON, SCALAR, Kernel, Target, bind
 from railquake.physics.profiles import Geometry, axis_constants
-from railquake.physics.vehicle import kernel_order, lateral_block
+from railquake.physics.vehicle import kernel_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -117,11 +117,6 @@ class System:
     def frames(self) -> int:
         """Frames in the run."""
         return len(self.drive) - 1
-
-    @property
-    def block(self) -> int:
-        """Rows of the vehicle's first block; see `vehicle.lateral_block`."""
-        return _sizes(self.vehicle)["BLOCK"]
 
     def kernel(self, target: Target = SCALAR) -> Kernel:
         """Bind `march.march` with the chosen laws, or one of its kin.
@@ -359,7 +354,7 @@ def _sizes(matrices: VehicleMatrices) -> dict[str, int]:
     """Constants of the kernel that follow from the vehicle."""
     return {
         "DOF_COUNT": len(matrices.mass),
-        "BLOCK": lateral_block(matrices.stiffness, matrices.damping),
+        "BLOCK": matrices.block,
         "PACKED": len(matrices.mass) * (len(matrices.mass) + 1) // 2,
     }
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.physics.vehicle import element_matrix, element_row
+from railquake.physics.vehicle import element_matrix, element_row, lateral_block
 
 if TYPE_CHECKING:
     from railquake.inputs.vehicle import Vehicle
@@ -36,6 +37,11 @@ class VehicleMatrices:
     mass: Array
     damping: Array
     stiffness: Array
+
+    @cached_property
+    def block(self) -> int:
+        """Rows of the first block in the kernel's order; see `lateral_block`."""
+        return lateral_block(self.stiffness, self.damping)
 
 
 def vehicle_matrices(vehicle: Vehicle) -> VehicleMatrices:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["run_with_progress"]
 
 Jobs = Annotated[int | None, typer.Option("--jobs", help="Threads; all processors by default.")]
+Device = Annotated[str, typer.Option("--device", help="cpu; or cuda for an NVIDIA GPU.")]
 
 
 @app.command()
@@ -61,6 +62,7 @@ def study(
         str | None,
         typer.Option("--scheduler", help="Dask scheduler whose workers run it: tcp://HOST:PORT."),
     ] = None,
+    device: Device = "cpu",
     changes: Annotated[
         list[str] | None,
         typer.Option(
@@ -86,6 +88,7 @@ def study(
         records=records,
         shard=shard,
         scheduler=scheduler,
+        device=device,
     )
 
 

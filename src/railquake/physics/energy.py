@@ -21,7 +21,6 @@ from typing import Any
 import numpy as np
 
 from railquake.physics import constant, state
-from railquake.physics.vehicle import packed
 
 __all__ = ["EnergyAudit", "audit"]
 
@@ -107,8 +106,9 @@ def audit(start: Array, end: Array, constants: Array) -> EnergyAudit:
     )
     block = constant.VEHICLE + dofs // 3
     inverse_mass = q[block : block + dofs]
-    entries = np.array([[packed(i, j, dofs) for j in range(dofs)] for i in range(dofs)])
-    suspension = q[block + dofs + entries]
+    i, j = np.triu_indices(dofs)  # in the order of `vehicle.packed`
+    suspension = np.empty((dofs, dofs))
+    suspension[i, j] = suspension[j, i] = q[block + dofs : block + dofs + len(i)]
 
     def stored(s: Array) -> tuple[float, float]:
         x, v = s[state.U : state.U + 3], s[state.U_V : state.U_V + 3]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -65,9 +65,7 @@ def _keep_design(key: str, design: Design) -> Design:
     return design
 
 
-def run_batch(
-    batch: Batch, stop: threading.Event | None = None
-) -> list[tuple[int, dict[str, Any]]]:
+def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
     """Run some rows of a study in lockstep, on this thread.
 
     Parameters
@@ -83,35 +81,20 @@ def run_batch(
     """
     stop = threading.Event() if stop is None else stop
     design = _design_of(batch)
-    done: dict[int, dict[str, Any]] = {}
+    done: Ended = []
 
-    def scenarios(rows: Sequence[int]) -> Iterator[tuple[int, Scenario]]:
-        for row in rows:
+    def scenarios() -> Iterator[tuple[int, Scenario]]:
+        for row in batch.rows:
             if stop.is_set():
                 return
             try:
                 yield row, design.scenario(design.point(row))
             except InputError as error:
-                done[row] = {"status": "failed", "error": str(error)}
+                done.append((row, {"status": "failed", "error": str(error)}))
 
-    try:
-        for row, measures in run_here(scenarios(batch.rows), stop):
-            done[row] = measures
-    except Exception:
-        # one of them has a fault that nobody foresaw: the others shall not suffer
-        for row in batch.rows:
-            if row in done or stop.is_set():
-                continue
-            try:
-                done.update(run_here(scenarios([row]), stop))
-            except Exception as error:
-                text = " ".join(f"{type(error).__name__}: {error}".split())
-                done[row] = {"status": "failed", "error": f"unexpected: {text}"}
-    if batch.time_step is not None:
-        for row, measures in done.items():
-            if "dt_error" in measures and "solver.dt" not in design.point(row).changes:
-                measures["dt_error"] = batch.time_step.error
-    return list(done.items())
+    for ended in run_here(scenarios(), stop):
+        done.append(ended)
+    return done
 
 
 @contextmanager

@@ -13,15 +13,21 @@ from concurrent.futures import (
     wait,
 )
 from concurrent.futures import ThreadPoolExecutor as Threads
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import choose_time_step, group_of, prepare
-from railquake.physics.kernel import lockstep_target
+from railquake.lockstep import (
+    Device,
+    choose_time_step,
+    group_of,
+    lanes_on,
+    prepare,
+    simulate_many,
+)
 from railquake.study.batches import Batch, Ended, kept_design, run_batch
 from railquake.study.design import Design
 from railquake.study.folder import ResultsFolder, no_note
@@ -32,6 +38,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
+    from railquake.lockstep import MakeLanes
     from railquake.study.file import Study
     from railquake.time_step import TimeStep
 
@@ -72,6 +79,7 @@ def run_study(
     executor: Executor | None = None,
     scheduler: str | None = None,
     shard: tuple[int, int] | str | None = None,
+    device: Device = "cpu",
 ) -> pd.DataFrame:
     """Run a study, or what is left of it; see `Study.run`."""
     import pyarrow as pa
@@ -83,6 +91,12 @@ def run_study(
         raise InputError(f"--jobs: must be at least 1, found {jobs}")
     if executor is not None and scheduler is not None:
         raise InputError("study: give either an executor or a scheduler, not both")
+    if device == "cuda" and (executor is not None or scheduler is not None):
+        raise InputError(
+            "study: device cuda is the GPU of this process and goes with neither an executor nor a "
+            "scheduler; give each GPU a shard"
+        )
+    make_lanes = lanes_on(device)
     study = study.with_suite(records)
     design = Design(study)
     if number > design.size:
@@ -97,12 +111,16 @@ def run_study(
             design = Design(study, step)
         rows = range(number - 1, design.size, count)
         work = plan(design, rows, _finished(folder.load(schema, say)), workers)
-        key = f"{out.resolve()}:{os.getpid()}:{time.monotonic_ns()}"
-        batches = [Batch(key, study, step, batch) for batch in work.batches]
-        if stop is not None and batches:
-            _compile(design, work, say)
-        with kept_design(key, design):
-            _run_all(pool, workers, stop, batches, work, design, folder, schema, progress)
+        if stop is not None:
+            _compile(design, work, say, make_lanes)
+        with _Keeper(work, design, step, folder, schema, progress) as keeper:
+            if device == "cuda":
+                _run_on_gpu(design, work, keeper, jobs)
+            else:
+                key = f"{out.resolve()}:{os.getpid()}:{time.monotonic_ns()}"
+                batches = [Batch(key, study, step, batch) for batch in work.batches]
+                with kept_design(key, design):
+                    _run_all(pool, workers, stop, batches, keeper)
     whole = folder.write_table(schema, dict(zip(rows, work.hashes, strict=True)))
     if count > 1:
         whole = whole.filter(pc.is_in(whole.column("row"), pa.array(list(rows), pa.int64())))
@@ -154,10 +172,11 @@ def _time_step(
     return folder.note_time_step(chosen)
 
 
-def _compile(design: Design, work: Work, say: Callable[[str], None]) -> None:
+def _compile(
+    design: Design, work: Work, say: Callable[[str], None], make_lanes: MakeLanes
+) -> None:
     """Compile or load each kernel here, where a request to stop is heard."""
     from railquake.assembly import assemble
-    from railquake.simulation import COMPILING
 
     seen = set()
     for batch in work.batches:
@@ -171,9 +190,7 @@ def _compile(design: Design, work: Work, say: Callable[[str], None]) -> None:
             if group in seen:
                 continue
             seen.add(group)
-            if not system.kernel(lockstep_target()).is_cached:
-                say(COMPILING)
-            prepare(system)
+            prepare(system, make_lanes, say)
 
 
 def _run_all(
@@ -181,15 +198,9 @@ def _run_all(
     workers: int,
     stop: threading.Event | None,
     batches: Iterable[Batch],
-    work: Work,
-    design: Design,
-    folder: ResultsFolder,
-    schema: pa.Schema,
-    progress: Callable[[StudyProgress], None] | None,
+    keeper: _Keeper,
 ) -> None:
-    """Run all batches; keep what has finished, whatever happens."""
-    keeper = _Keeper(work, design, folder, schema)
-    keeper.take([(row, {"status": "failed", "error": e}) for row, e in work.failed.items()])
+    """Run all batches on an executor; keep what has finished, whatever happens."""
     task = run_batch if stop is None else partial(run_batch, stop=stop)
     waiting = iter(batches)
     running: set[Future[Ended]] = set()
@@ -197,14 +208,12 @@ def _run_all(
         while True:
             while len(running) < 2 * workers and (batch := next(waiting, None)) is not None:
                 running.add(pool.submit(task, batch))
-            if progress is not None:
-                progress(keeper.progress())
+            keeper.look_up()
             if not running:
                 break
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 keeper.take(future.result())
                 running.remove(future)
-            keeper.flush()
     except (KeyboardInterrupt, InputError):
         raise
     except Exception as error:
@@ -217,10 +226,18 @@ def _run_all(
             "files, and run the same command again to go on"
         ) from None
     finally:
-        try:
-            _wind_down(running, stop, keeper)
-        finally:
-            keeper.flush(all_of_it=True)
+        _wind_down(running, stop, keeper)
+
+
+def _run_on_gpu(design: Design, work: Work, keeper: _Keeper, threads: int | None) -> None:
+    """Run all rows on the GPU, whose lanes take the next one when they are free."""
+    rows = [row for batch in work.batches for row in batch]
+    scenarios = (design.scenario(design.point(row)) for row in rows)
+    keeper.look_up()
+    with closing(simulate_many(scenarios, threads=threads, device="cuda")) as results:
+        for place, measures in results:
+            keeper.take([(rows[place], measures)])
+            keeper.look_up()
 
 
 def _wind_down(running: set[Future[Ended]], stop: threading.Event | None, keeper: _Keeper) -> None:
@@ -242,10 +259,13 @@ class _Keeper:
         self,
         work: Work,
         design: Design,
+        step: TimeStep | None,
         folder: ResultsFolder,
         schema: pa.Schema,
+        report: Callable[[StudyProgress], None] | None,
     ) -> None:
-        self.work, self.design, self.folder, self.schema = work, design, folder, schema
+        self.work, self.design, self.step, self.folder = work, design, step, folder
+        self.schema, self.report = schema, report
         self.rows: list[dict[str, Any]] = []
         self.ended = 0
         self.begin = self.flushed = time.monotonic()
@@ -255,28 +275,43 @@ class _Keeper:
         self.former = self.total - len(work.failed) - len(work.steps)
         self.former -= sum(map(len, work.twins.values()))
 
+    def __enter__(self) -> _Keeper:
+        self.take([(row, {"status": "failed", "error": e}) for row, e in self.work.failed.items()])
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._flush()
+
     def take(self, results: Ended) -> None:
         """Take the measures of some rows; those of the same scenario have the same."""
         for row, measures in results:
             self.left -= self.work.steps.get(row, 0.0)
             for twin in (row, *self.work.twins.get(row, ())):
                 key = self.work.hashes[(twin - self.work.rows.start) // self.work.rows.step]
-                self.rows.append(table_row(self.design.point(twin), key, measures))
+                point = self.design.point(twin)
+                made = table_row(point, key, measures)
+                chosen = None if "solver.dt" in point.changes else self.step
+                if chosen is not None and "dt_error" in measures:
+                    made["dt_error"] = chosen.error
+                self.rows.append(made)
                 self.ended += 1
 
-    def progress(self) -> StudyProgress:
-        """How far the study is."""
+    def look_up(self) -> None:
+        """Write a part, if it is time, and say how far the study is."""
+        if time.monotonic() - self.flushed > FLUSH_S or len(self.rows) > FLUSH_ROWS:
+            self._flush()
+        if self.report is not None:
+            self.report(self._progress())
+
+    def _progress(self) -> StudyProgress:
         passed = max(time.monotonic() - self.begin, 1e-9)
         worked = self.all_steps - self.left
         remaining = passed * self.left / worked if worked > 0.0 else None
         return StudyProgress(self.former + self.ended, self.total, self.ended / passed, remaining)
 
-    def flush(self, all_of_it: bool = False) -> None:
-        """Write a part, if it is time."""
-        now = time.monotonic()
-        due = all_of_it or now - self.flushed > FLUSH_S or len(self.rows) > FLUSH_ROWS
-        if not self.rows or not due:
+    def _flush(self) -> None:
+        if not self.rows:
             return
         rows, self.rows = self.rows, []
         self.folder.add(rows, self.schema)
-        self.flushed = now
+        self.flushed = time.monotonic()

@@ -23,6 +23,7 @@ from railquake.suite import SUITES, Suite, SuiteMember, load_suite
 if TYPE_CHECKING:
     import pandas as pd
 
+    from railquake.lockstep import Device
     from railquake.study.engine import StudyProgress
 
 __all__ = ["AUTO", "Study", "load_study"]
@@ -233,6 +234,7 @@ class Study:
         executor: Executor | None = None,
         scheduler: str | None = None,
         shard: tuple[int, int] | str | None = None,
+        device: Device = "cpu",
     ) -> pd.DataFrame:
         """Run the study, or what is left of it.
 
@@ -242,7 +244,7 @@ class Study:
             Folder for the results.  If it holds results of this study, only what is missing is
             run.
         jobs : int, optional
-            Threads; all processors by default.
+            Threads; all processors by default, two for a GPU.
         records : str or Path, optional
             Folder that holds the suite's records.
         progress : callable, optional
@@ -255,6 +257,8 @@ class Study:
             Address of a Dask scheduler whose workers run the batches: ``"tcp://host:8786"``.
         shard : (int, int) or str, optional
             ``(3, 8)`` or ``"3/8"``: only the third of eight parts of the study.
+        device : {"cpu", "cuda"}
+            See `simulate_many`; ``cuda`` goes with neither executor nor scheduler.
 
         Returns
         -------
@@ -266,7 +270,7 @@ class Study:
         ------
         InputError
             If an input is wrong, the folder holds another study or cannot be written, or the
-            scheduler is not there.  Finished rows are kept.
+            scheduler or the GPU is not there.  Finished rows are kept.
         """
         from railquake.study.engine import run_study
 
@@ -280,6 +284,7 @@ class Study:
             executor=executor,
             scheduler=scheduler,
             shard=shard,
+            device=device,
         )
 
 

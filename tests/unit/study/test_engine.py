@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import railquake as rq
+from railquake import lockstep
 from railquake.errors import InputError
 from railquake.study import batches, engine, open_results
 from railquake.study.design import Design
@@ -66,6 +67,59 @@ def test_any_executor_and_number_of_threads_gives_the_same_table(finished, tmp_p
     assert untimed(own).equals(untimed(table))
 
 
+@pytest.fixture
+def gpu(monkeypatch):
+    """The CPU in the GPU's place; what it was asked for."""
+    asked = []
+
+    def on_cpu(scenarios, *, threads, device):
+        asked.append((threads, device))
+        return lockstep.simulate_many(scenarios, threads=threads)
+
+    def lanes_on(device, real=engine.lanes_on):
+        asked.append(device)
+        return real("cpu")
+
+    monkeypatch.setattr(engine, "simulate_many", on_cpu)
+    monkeypatch.setattr(engine, "lanes_on", lanes_on)
+    return asked
+
+
+def test_a_gpu_gives_the_same_table_and_takes_its_rows_as_one_queue(finished, gpu, tmp_path):
+    seen = []
+    table = study().run(tmp_path, device="cuda", progress=seen.append)
+    assert gpu == ["cuda", (None, "cuda")]
+    assert untimed(table).equals(untimed(finished[0]))
+    assert [progress.done for progress in seen] == list(range(13))
+    assert study().run(tmp_path).equals(table)  # complete, wherever it goes on
+
+
+def test_a_stop_of_a_gpus_study_leaves_what_has_finished(gpu, tmp_path):
+    def interrupt(progress):
+        if progress.done == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        study().run(tmp_path, device="cuda", progress=interrupt)
+    assert len(open_results(tmp_path).table) == 3
+
+
+def test_a_gpu_that_is_not_there_is_refused_before_anything_is_written(tmp_path, monkeypatch):
+    monkeypatch.setattr("railquake.device.missing_for_cuda", lambda: "none here")
+    with pytest.raises(InputError, match="device: cuda cannot be used: none here"):
+        study().run(tmp_path / "out", device="cuda")
+    with pytest.raises(InputError, match='device: must be cpu or cuda, found "gpu"'):
+        study().run(tmp_path / "out", device="gpu")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_gpu_goes_with_no_other_executor(gpu, tmp_path):
+    with ThreadPoolExecutor(1) as executor:
+        for other in ({"executor": executor}, {"scheduler": "tcp://127.0.0.1:1"}):
+            with pytest.raises(InputError, match="give each GPU a shard"):
+                study().run(tmp_path, device="cuda", **other)
+
+
 def test_failed_runs_are_rows_with_their_reason(tmp_path):
     data = tables(**{"solver.dt": ["5e-5 s", "4.9e-4 s"], "motion.scale": [1.0, 2.0]})
     table = study(data).run(tmp_path)
@@ -76,8 +130,6 @@ def test_failed_runs_are_rows_with_their_reason(tmp_path):
 
 
 def test_an_unforeseen_fault_of_one_run_is_a_row_and_the_others_finish(tmp_path, monkeypatch):
-    from railquake import lockstep
-
     def assemble(scenario, real=lockstep.assemble):
         if scenario.motion.scale == 2.0:
             raise ZeroDivisionError("nobody foresaw this")
