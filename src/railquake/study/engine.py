@@ -172,9 +172,7 @@ def _time_step(
     return folder.note_time_step(chosen)
 
 
-def _compile(
-    design: Design, work: Work, say: Callable[[str], None], make_lanes: MakeLanes
-) -> None:
+def _compile(design: Design, work: Work, say: Callable[[str], None], make_lanes: MakeLanes) -> None:
     """Compile or load each kernel here, where a request to stop is heard."""
     from railquake.assembly import assemble
 
