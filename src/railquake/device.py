@@ -59,7 +59,7 @@ class DeviceLanes:
     """
 
     most = MOST_LANES
-    compiling: str | None = "compiling the kernel for the GPU (in each process; about half a minute) ..."
+    compiling: str | None = "compiling for the GPU (in each process; about half a minute) ..."
 
     def __init__(self, system: System, refresh_steps: int) -> None:
         self.kernel = system.kernel(CUDA)
