@@ -290,7 +290,6 @@ class _Abreast:
             self.refresh_steps,
         )
         self.first += frames * self.stride
-        self.done += frames
 
     def frames_done(self, lane: int) -> int:
         return int(self.done[lane])

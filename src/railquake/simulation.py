@@ -73,8 +73,9 @@ def simulate(
     done = 0
     while done < system.frames:
         count = min(CHUNK, system.frames - done)
-        kernel.call(end, system.constants, system.geometry, system.drive, done, count, rows, frames)
-        done += count
+        done += kernel.call(
+            end, system.constants, system.geometry, system.drive, done, count, rows, frames
+        )
         if progress is not None:
             progress(done, system.frames)
         if end[state.DIVERGED, 0] > 0.0:

@@ -52,6 +52,19 @@ def test_a_row_does_not_depend_on_its_neighbours(rows):
     assert untimed(alone[0]) == untimed(rows[1])
 
 
+def test_a_run_that_diverges_ends_with_that_frame_whatever_its_neighbours():
+    """Its neighbours decide when the engine looks up, and it goes on meanwhile."""
+    hopeless = rq.scenario(synthetic=SHORT, scale=100.0)
+    brief = rq.scenario(synthetic={**SHORT, "duration": "0.9 s", "highpass_frequency": "1.3 Hz"})
+    alone = dict(rq.simulate_many([hopeless], threads=1))[0]
+    assert alone["status"] == "diverged"
+    assert untimed(dict(rq.simulate_many([brief, hopeless], threads=1))[1]) == untimed(alone)
+    single = rq.assess(rq.simulate(hopeless))
+    assert single["status"] == "diverged"
+    assert single["steps"] == alone["steps"]
+    assert 0.0 < alone["steps"] * alone["dt_s"] < 1.0
+
+
 def test_rows_are_those_of_single_runs(rows):
     for index, case in enumerate(mixed()):
         single = rq.assess(rq.simulate(case))

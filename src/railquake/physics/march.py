@@ -756,8 +756,10 @@ def march(
     frames: int,
     rows: Array,
     history: Array,
-) -> None:
+) -> int:
     """Run ``frames`` frames of one scenario and note each frame's state.
+
+    A run that diverges stops at the end of that frame.
 
     Parameters
     ----------
@@ -775,24 +777,35 @@ def march(
         State rows to keep.
     history : array, shape (all frames + 1, channels)
         Row k is the state at the end of frame k (row 0, the start, is not written).
+
+    Returns
+    -------
+    int
+        Frames that it ran.
     """
     S = np.empty((state_in.shape[0], LANES))
     Q = np.empty((constants.shape[0], LANES))
     S[:, :] = state_in
     Q[:, :] = constants
     steps = int(Q[constant.FRAME_STEPS, 0])
-    for frame in range(first_frame, first_frame + frames):
+    frame = first_frame
+    end = first_frame + frames
+    while frame < end:
         begin_frame(S, Q, drive, frame, 0)
         for _ in range(steps):
             step(S, Q, geometry, LANES)
-        S[state.TIME, 0] = (frame + 1) * steps * Q[constant.DT, 0]
+        frame += 1
+        S[state.TIME, 0] = frame * steps * Q[constant.DT, 0]
         filter_forces(S, Q, steps, 0)
         watch(S, Q, 0)
         for k in range(len(rows)):
-            history[frame + 1, k] = S[rows[k], 0]
+            history[frame, k] = S[rows[k], 0]
         if S[state.LEAVING, 0] > 0.0:
             release(S, Q, 0)
+        if S[state.DIVERGED, 0] > 0.0:
+            end = frame
     state_in[:, :] = S
+    return frame - first_frame
 
 
 def march_abreast(
@@ -810,7 +823,8 @@ def march_abreast(
     """Run ``frames`` frames of several scenarios in lockstep, one to a lane.
 
     Every lane takes the same path through the same instructions: what it gives does not depend on
-    its neighbours.
+    its neighbours.  One that diverges goes on with them, but what it gives is its state at the end
+    of that frame.
 
     Parameters
     ----------
@@ -823,7 +837,7 @@ def march_abreast(
         Row of ``drive`` at which each lane's first frame begins, and rows to the next frame (0
         holds an idle lane where it is).
     done : array of int, shape (LANES,)
-        Frames that each lane has behind it.
+        Frames that each lane has behind it, in and out.
     frames, lanes : int
         ``lanes`` is LANES; as an argument it keeps the compiler from unrolling the loops.
     refresh : int
@@ -854,7 +868,14 @@ def march_abreast(
         for lane in range(lanes):
             if S[state.LEAVING, lane] > 0.0:
                 release(S, Q, lane)
-    state_in[:, :] = S
+        for lane in range(lanes):
+            if S[state.DIVERGED, lane] > state_in[state.DIVERGED, lane]:
+                state_in[:, lane] = S[:, lane]
+                done[lane] += frame + 1
+    for lane in range(lanes):
+        if S[state.DIVERGED, lane] == 0.0:
+            state_in[:, lane] = S[:, lane]
+            done[lane] += frames
 
 
 def thread_number() -> int:
