@@ -276,8 +276,7 @@ class _Abreast:
         self.first[lane], self.stride[lane] = self.most * self.slot, 0
 
     def march(self, left: dict[int, int]) -> None:
-        frames = min(CHUNK, *left.values()) if left else 0
-        self.kernel.call(
+        frames = self.kernel.call(
             self.states,
             self.constants,
             self.geometry,
@@ -285,11 +284,12 @@ class _Abreast:
             self.first,
             self.stride,
             self.done,
-            frames,
+            min(CHUNK, *left.values()) if left else 0,
             self.most,
             self.refresh_steps,
         )
         self.first += frames * self.stride
+        self.done += frames
 
     def frames_done(self, lane: int) -> int:
         return int(self.done[lane])

@@ -53,7 +53,6 @@ def test_a_row_does_not_depend_on_its_neighbours(rows):
 
 
 def test_a_run_that_diverges_ends_with_that_frame_whatever_its_neighbours():
-    """Its neighbours decide when the engine looks up, and it goes on meanwhile."""
     hopeless = rq.scenario(synthetic=SHORT, scale=100.0)
     brief = rq.scenario(synthetic={**SHORT, "duration": "0.9 s", "highpass_frequency": "1.3 Hz"})
     alone = dict(rq.simulate_many([hopeless], threads=1))[0]

@@ -819,12 +819,11 @@ def march_abreast(
     frames: int,
     lanes: int,
     refresh: int,
-) -> None:
+) -> int:
     """Run ``frames`` frames of several scenarios in lockstep, one to a lane.
 
     Every lane takes the same path through the same instructions: what it gives does not depend on
-    its neighbours.  One that diverges goes on with them, but what it gives is its state at the end
-    of that frame.
+    its neighbours.  If one diverges, all stop at the end of that frame.
 
     Parameters
     ----------
@@ -837,19 +836,26 @@ def march_abreast(
         Row of ``drive`` at which each lane's first frame begins, and rows to the next frame (0
         holds an idle lane where it is).
     done : array of int, shape (LANES,)
-        Frames that each lane has behind it, in and out.
+        Frames that each lane has behind it.
     frames, lanes : int
         ``lanes`` is LANES; as an argument it keeps the compiler from unrolling the loops.
     refresh : int
         Steps between two evaluations of the hinge's degradation, and between two looks at flanges
         that are far from their rails.
+
+    Returns
+    -------
+    int
+        Frames that they ran.
     """
     S = np.empty((state_in.shape[0], LANES))
     Q = np.empty((constants.shape[0], LANES))
     S[:, :] = state_in
     Q[:, :] = constants
     steps = int(Q[constant.FRAME_STEPS, 0])
-    for frame in range(frames):
+    frame = 0
+    end = frames
+    while frame < end:
         for lane in range(lanes):
             begin_frame(S, Q, drive, first[lane] + frame * stride[lane], lane)
         for n in range(steps):
@@ -859,8 +865,9 @@ def march_abreast(
                 for lane in range(lanes):
                     look_again(S, lane)
             step(S, Q, geometry, lanes)
+        frame += 1
         for lane in range(lanes):
-            S[state.TIME, lane] = (done[lane] + frame + 1) * steps * Q[constant.DT, lane]
+            S[state.TIME, lane] = (done[lane] + frame) * steps * Q[constant.DT, lane]
         for lane in range(lanes):
             filter_forces(S, Q, steps, lane)
         for lane in range(lanes):
@@ -869,13 +876,10 @@ def march_abreast(
             if S[state.LEAVING, lane] > 0.0:
                 release(S, Q, lane)
         for lane in range(lanes):
-            if S[state.DIVERGED, lane] > state_in[state.DIVERGED, lane]:
-                state_in[:, lane] = S[:, lane]
-                done[lane] += frame + 1
-    for lane in range(lanes):
-        if S[state.DIVERGED, lane] == 0.0:
-            state_in[:, lane] = S[:, lane]
-            done[lane] += frames
+            if S[state.DIVERGED, lane] > 0.0:
+                end = frame
+    state_in[:, :] = S
+    return frame
 
 
 def thread_number() -> int:
