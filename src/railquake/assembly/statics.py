@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -194,7 +195,7 @@ def _newton(residual: Callable[[Array], Array], start: Array) -> Array | None:
             if np.linalg.norm(tried) < 0.1 * np.linalg.norm(found):
                 x, found = near, tried
                 continue
-        jacobian = _jacobian(residual, x)
+        jacobian = _jacobian(residual, x, found)
         try:
             full = -np.linalg.solve(jacobian, found)
         except np.linalg.LinAlgError:
@@ -212,13 +213,13 @@ def _newton(residual: Callable[[Array], Array], start: Array) -> Array | None:
     return x if np.abs(found).max() < 1e-8 else None
 
 
-def _jacobian(residual: Callable[[Array], Array], x: Array) -> Array:
-    """Derivatives of the residual by central differences."""
+def _jacobian(residual: Callable[[Array], Array], x: Array, found: Array) -> Array:
+    """Derivatives of the residual, which is ``found`` at ``x``, by forward differences."""
     jacobian = np.empty((len(x), len(x)))
     for k in range(len(x)):
         unit = np.zeros(len(x))
         unit[k] = 1e-6
-        jacobian[:, k] = (residual(x + unit) - residual(x - unit)) / 2e-6
+        jacobian[:, k] = (residual(x + unit) - found) / 1e-6
     return jacobian
 
 
@@ -281,10 +282,11 @@ def contact_forces(
     # the wheelset's (y, z, phi) among the kernel's rows
     rows = state.VEHICLE + np.argsort(kernel_order(dofs))[-3:]
 
-    def evaluate(position: Array, velocity: Array, track: Array) -> tuple[Array, Array]:
-        S[rows, 0] = position
-        S[rows + dofs, 0] = velocity
-        S[state.TRACK_Y : state.TRACK_Y + 3, 0] = track
+    @cache  # most derivatives of the equilibrium leave the contacts where they are
+    def acting(place: tuple[float, ...]) -> tuple[Array, Array]:
+        S[rows, 0] = place[:3]
+        S[rows + dofs, 0] = place[3:6]
+        S[state.TRACK_Y : state.TRACK_Y + 3, 0] = place[6:]
         S[state.TRACK_VY : state.TRACK_VY + 3, 0] = 0.0
         # a standing contact: closed, with the hysteresis of the slowest onset
         hysteresis = Q[constant.ALPHA_R, 0] / Q[constant.ONSET_BOUND, 0]
@@ -296,4 +298,4 @@ def contact_forces(
         node = np.array([S[state.NODE_U, 0], 0.0, S[state.NODE_THETA2, 0]])
         return wheelset, node
 
-    return evaluate
+    return lambda position, velocity, track: acting((*position, *velocity, *track))
