@@ -69,21 +69,20 @@ def step(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
         fetch(S, Q, geometry, lane)
     for lane in range(lanes):
         press(S, Q, geometry, 0, 0, lane)
+        press(S, Q, geometry, 1, 0, lane)
     if comes_near(S, 0, lanes):
         for lane in range(lanes):
             press(S, Q, geometry, 0, 1, lane)
-    for lane in range(lanes):
-        press(S, Q, geometry, 1, 0, lane)
     if comes_near(S, 1, lanes):
         for lane in range(lanes):
             press(S, Q, geometry, 1, 1, lane)
     for lane in range(lanes):
         react(S, Q, lane)
-    for i in range(BLOCK):
-        for lane in range(lanes):
+    for lane in range(lanes):
+        for i in range(BLOCK):
             accelerate_lateral(S, Q, i, lane)
-    for i in range(BLOCK, DOF_COUNT):
-        for lane in range(lanes):
+    for lane in range(lanes):
+        for i in range(BLOCK, DOF_COUNT):
             accelerate_vertical(S, Q, i, lane)
     for lane in range(lanes):
         damp(S, Q, lane)
