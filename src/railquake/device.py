@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from railquake.assembly import System
     from railquake.physics.profiles import Geometry
 
-__all__ = ["DeviceLanes", "require_device"]
+__all__ = ["DeviceLanes", "require_device", "require_known"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -32,6 +32,17 @@ FIRST_LANES = 64
 MOTION_BYTES = 2 * 1024**3  # of the motions of one batch
 CHUNK = 200  # frames that are run at once
 GEOMETRIES = 8  # kept on the device
+
+
+def require_known(device: str) -> None:
+    """Refuse a device that is neither ``cpu`` nor ``cuda``.
+
+    Raises
+    ------
+    InputError
+    """
+    if device not in ("cpu", "cuda"):
+        raise InputError(f'device: must be cpu or cuda, found "{device}"')
 
 
 def require_device() -> None:

@@ -20,8 +20,8 @@ import numpy as np
 
 from railquake.assembly import System, assemble
 from railquake.assessment import assess
-from railquake.device import DeviceLanes, require_device
-from railquake.errors import InputError
+from railquake.device import DeviceLanes, require_device, require_known
+from railquake.errors import InputError, on_one_line
 from railquake.physics import state
 from railquake.physics.energy import audit
 from railquake.physics.kernel import lockstep_target
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Device",
     "choose_time_step",
+    "failed_row",
     "group_of",
     "lanes_on",
     "prepare",
@@ -306,8 +307,7 @@ def lanes_on(device: str) -> MakeLanes:
     InputError
         If the device is neither ``cpu`` nor ``cuda``, or there is no GPU to be used.
     """
-    if device not in ("cpu", "cuda"):
-        raise InputError(f'device: must be cpu or cuda, found "{device}"')
+    require_known(device)
     if device == "cpu":
         return _Abreast
     require_device()
@@ -346,7 +346,7 @@ def run_here(
             by_itself = singly or scenario.solver.contact == "grid"
             row = assess(replace(simulate(system), time_step=choice)) if by_itself else None
         except Exception as error:  # the others shall not suffer
-            row = _failed(error)
+            row = failed_row(error)
         if row is not None:
             yield index, row
             continue
@@ -447,10 +447,10 @@ class _Batch:
             yield from self.advance()
 
 
-def _failed(error: Exception) -> Row:
-    text = str(error)
-    if not isinstance(error, InputError):
-        text = f"unexpected: {' '.join(f'{type(error).__name__}: {error}'.split())}"
+def failed_row(error: Exception) -> Row:
+    """The row of a scenario that could not be run."""
+    is_input = isinstance(error, InputError)
+    text = str(error) if is_input else f"unexpected: {on_one_line(error)}"
     return {"status": "failed", "error": text}
 
 
@@ -469,4 +469,4 @@ def _row(job: _Job, end: np.ndarray[Any, np.dtype[np.float64]], frames: int) -> 
             )
         )
     except Exception as error:
-        return _failed(error)
+        return failed_row(error)

@@ -8,7 +8,6 @@ import typer
 
 from railquake.cli.application import app
 from railquake.cli.shared import Json, print_json
-from railquake.errors import InputError
 
 Device = Annotated[
     str, typer.Option("--device", help="cpu; or cuda for a GPU alone, beside a sample on the CPU.")
@@ -21,8 +20,9 @@ def bench(as_json: Json = False, device: Device = "cpu") -> None:
 
     Example: railquake bench --json
     """
-    if device not in ("cpu", "cuda"):
-        raise InputError(f'device: must be cpu or cuda, found "{device}"')
+    from railquake.device import require_known
+
+    require_known(device)
     if device == "cuda":
         from railquake.bench_gpu import print_bench_gpu, run_bench_gpu
 

@@ -37,8 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0; 2 after a wrong input, with one line on standard error; 130 after Ctrl-C or a request
-        to terminate.
+        0; 2 after a wrong input, with one line on standard error; 130 after Ctrl-C, or a request to
+        terminate where `stopping` hears it.
     """
     status = _status(arguments)
     if arguments is None:

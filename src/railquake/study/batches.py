@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import run_here
+from railquake.lockstep import failed_row, run_here
 from railquake.study.design import Design
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
             try:
                 yield row, design.scenario(design.point(row))
             except InputError as error:
-                done.append((row, {"status": "failed", "error": str(error)}))
+                done.append((row, failed_row(error)))
 
     for ended in run_here(scenarios(), stop):
         done.append(ended)

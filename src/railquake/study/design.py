@@ -90,7 +90,7 @@ class Design:
         assert study.suite is None or isinstance(study.suite, Suite), "the suite is loaded first"
         self.study = study
         self.where = study.where
-        self._time_step = time_step
+        self.time_step = time_step
         base = dict(study.base)
         motion = base.pop("motion", None)
         self._base = base
@@ -216,7 +216,7 @@ class Design:
         scenario = Scenario.model_construct(
             motion=motion, **{key: section for key, (section, _) in parts.items()}
         )
-        if scenario.solver.dt == "auto" and self._time_step is not None:
+        if scenario.solver.dt == "auto" and self.time_step is not None:
             parts["solver"] = self._settled(scenario, tuple(text for _, text in parts.values()))
             scenario = scenario.model_copy(update={"solver": parts["solver"][0]})
         texts = {key: text for key, (_, text) in parts.items()}
@@ -239,11 +239,11 @@ class Design:
 
     def _settled(self, scenario: Scenario, name: tuple[str, ...]) -> tuple[Any, str]:
         """The solver with the time step that was chosen, found once for all motions."""
-        assert self._time_step is not None  # by the caller
+        assert self.time_step is not None  # by the caller
         with self._lock:
             if name in self._solvers:
                 return self._solvers[name]
-        solver = self._time_step.settled(scenario).solver
+        solver = self.time_step.settled(scenario).solver
         result = solver, fingerprint(solver)
         _remember(self._solvers, name, result, self._lock)
         return result

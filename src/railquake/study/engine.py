@@ -113,7 +113,7 @@ def run_study(
         work = plan(design, rows, _finished(folder.load(schema, say)), workers)
         if stop is not None:
             _compile(design, work, say, make_lanes)
-        with _Keeper(work, design, step, folder, schema, progress) as keeper:
+        with _Keeper(work, design, folder, schema, progress) as keeper:
             if device == "cuda":
                 _run_on_gpu(design, work, keeper, jobs)
             else:
@@ -257,13 +257,12 @@ class _Keeper:
         self,
         work: Work,
         design: Design,
-        step: TimeStep | None,
         folder: ResultsFolder,
         schema: pa.Schema,
         report: Callable[[StudyProgress], None] | None,
     ) -> None:
-        self.work, self.design, self.step, self.folder = work, design, step, folder
-        self.schema, self.report = schema, report
+        self.work, self.design, self.folder, self.schema = work, design, folder, schema
+        self.report = report
         self.rows: list[dict[str, Any]] = []
         self.ended = 0
         self.begin = self.flushed = time.monotonic()
@@ -288,7 +287,7 @@ class _Keeper:
                 key = self.work.hashes[(twin - self.work.rows.start) // self.work.rows.step]
                 point = self.design.point(twin)
                 made = table_row(point, key, measures)
-                chosen = None if "solver.dt" in point.changes else self.step
+                chosen = None if "solver.dt" in point.changes else self.design.time_step
                 if chosen is not None and "dt_error" in measures:
                     made["dt_error"] = chosen.error
                 self.rows.append(made)

@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from railquake.errors import InputError
+from railquake.errors import InputError, on_one_line
 from railquake.validation.comparison import Result
 from railquake.validation.runner import Report, is_green
 
@@ -238,7 +238,7 @@ def _draw(
                 picture.draw(folder / file)
             except Exception as error:
                 (folder / file).unlink(missing_ok=True)
-                reason = " ".join(f"{type(error).__name__}: {error}".split())
+                reason = on_one_line(error)
                 complaints.append(f"{report.name}: plot {picture.name} failed: {reason}")
                 continue
             link = (PICTURES / file).as_posix()

@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from railquake.errors import InputError
+from railquake.errors import InputError, on_one_line
 from railquake.inputs._model import did_you_mean
 from railquake.validation import registry
 from railquake.validation.comparison import Comparison, Outcome, Unavailable
@@ -139,7 +139,7 @@ def run_one(name: str, comparison: Comparison, data: Path | None) -> Report:
     except Unavailable as reason:
         skipped = str(reason)
     except Exception as problem:
-        error = " ".join(f"{type(problem).__name__}: {problem}".split())
+        error = on_one_line(problem)
     return Report(name, comparison, outcome, skipped, error, time.perf_counter() - begin)
 
 
