@@ -74,7 +74,6 @@ def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
     s[x, 0] += sign * push(name)[9:18]
     s[v, 0] += sign * push(name)[18:]
     march.find_contact_forces(s, q, system.geometry)
-    s[state.WORK_TRACK] = 0.0
     s[state.TRACK_OLD : state.TRACK_OLD + 3] = s[state.TRACK_FY : state.TRACK_FY + 3]
     s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3] = s[state.WHEELSET_Y : state.WHEELSET_Y + 3]
     powers = slice(state.IMPACT_POWER, state.IMPACT_POWER + 3)
@@ -84,6 +83,13 @@ def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
     force -= matrices.stiffness @ s[x, 0] + matrices.damping @ s[v, 0]
     force[-3:] += s[state.WHEELSET_Y : state.WHEELSET_Y + 3, 0]
     s[a, 0] = s[a + 9, 0] = force / matrices.mass
+    # y, phi, z of the wheelset, but for its contact forces
+    free = s[a[[6, 8, 7]], 0]
+    free -= (
+        s[[state.WHEELSET_Y, state.WHEELSET_PHI, state.WHEELSET_Z], 0] / matrices.mass[[6, 8, 7]]
+    )
+    s[state.WHEELSET_FREE : state.WHEELSET_FREE + 3, 0] = free
+    s[state.WHEELSET_FREE_KNOWN : state.WHEELSET_FREE_KNOWN + 3, 0] = free
     k = q[constant.K : constant.K + 6, 0]
     column = np.array([[k[0], k[1], k[2]], [k[1], k[3], k[4]], [k[2], k[4], k[5]]])
     node = q[constant.REACTION, 0] * np.array([s[state.NODE_U, 0], 0.0, s[state.NODE_THETA2, 0]])

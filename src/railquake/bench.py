@@ -49,11 +49,12 @@ def _rate(case: Scenario, repeats: int) -> tuple[float, float]:
     return max(rates), statistics.median(rates)
 
 
-def _lockstep_rate(threads: int, repeats: int, motion: dict[str, Any]) -> float:
+def _lockstep_rate(threads: int, repeats: int, motion: dict[str, Any], **inputs: Any) -> float:
     """Best steps per second of a batch, assembly included: two dozen scenarios to a lane."""
     count = 24 * lockstep_target().lanes * threads
     cases = [
-        _case(motion={**motion, "seed": 18 + k}, scale=0.6 + 0.8 * k / count) for k in range(count)
+        _case(motion={**motion, "seed": 18 + k}, scale=0.6 + 0.8 * k / count, **inputs)
+        for k in range(count)
     ]
     list(simulate_many(cases[:1], threads=1))
     rates = []
@@ -138,12 +139,14 @@ def run_bench(*, repeats: int = 5, seconds: bool = True, short: bool = False) ->
     grid, _ = _rate(_case(motion=grid_motion, contact="grid"), max(1, repeats // 2))
     lockstep = _lockstep_rate(1, max(1, repeats // 2), motion)
     two = _lockstep_rate(2, max(1, repeats // 2), motion)
+    one_step = _lockstep_rate(1, max(1, repeats // 2), motion, substeps=1)
     opensees = _opensees_rate(max(1, repeats // 2), 500 if short else OPENSEES_STEPS)
     row: dict[str, Any] = {
         "scalar_steps_per_s": scalar,
         "scalar_median_steps_per_s": median,
         "lockstep_steps_per_s": lockstep,
         "lockstep_two_threads_steps_per_s": two,
+        "lockstep_one_step_for_all_steps_per_s": one_step,
         "lockstep_over_scalar": lockstep / scalar,
         "two_threads_over_one": two / lockstep,
         "gpu_steps_per_s": None,
@@ -164,7 +167,8 @@ RATES = (
     ("scalar_steps_per_s", "one run: Bouc-Wen, table contact, one core"),
     ("scalar_median_steps_per_s", "... median of the repetitions"),
     ("lockstep_steps_per_s", "many abreast, Bouc-Wen, one core"),
-    ("lockstep_two_threads_steps_per_s", "many abreast, two threads"),
+    ("lockstep_two_threads_steps_per_s", "... two threads"),
+    ("lockstep_one_step_for_all_steps_per_s", "... one core, structure and bodies every step"),
     ("gpu_steps_per_s", "many on a GPU"),
     ("elastic_steps_per_s", "one run, elastic hinge"),
     ("grid_steps_per_s", "one run, Bouc-Wen, grid contact"),

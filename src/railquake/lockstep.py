@@ -47,6 +47,7 @@ Row = dict[str, Any]
 Device = Literal["cpu", "cuda"]
 REFRESH_STEPS = 10  # of the hinge's degradation
 REFRESH_TIME = 1e-4  # s; with longer time steps it is refreshed after fewer of them
+SUBSTEPS = 10  # where a scenario does not say
 GPU_THREADS = 2
 CHUNK = 500  # frames that a batch runs without looking up
 OPEN_BATCHES = 16  # of one thread
@@ -95,9 +96,10 @@ def simulate_many(
 
     Notes
     -----
-    The step is that of `simulate`, but for the hinge: one consistently linearised solve a step, and
-    its degradation extrapolated between evaluations.  The grid method of contact is run by
-    `simulate` itself.
+    The step is that of `simulate`, but for the hinge (one consistently linearised solve a step, and
+    its degradation extrapolated between evaluations) and, unless ``solver.substeps`` says
+    otherwise, for the longer step of structure and sprung bodies (`march.step`).  The grid method
+    of contact is run by `simulate` itself.
     """
     make_lanes = lanes_on(device)
     count = threads
@@ -343,8 +345,12 @@ def run_here(
         try:
             settled_scenario, choice = settled(scenario)
             system = assemble(settled_scenario)
-            by_itself = singly or scenario.solver.contact == "grid"
-            row = assess(replace(simulate(system), time_step=choice)) if by_itself else None
+            if singly or scenario.solver.contact == "grid":
+                row = assess(replace(simulate(system), time_step=choice))
+            else:
+                row = None
+                if settled_scenario.solver.substeps is None:
+                    system = system.with_substeps(SUBSTEPS)
         except Exception as error:  # the others shall not suffer
             row = failed_row(error)
         if row is not None:
@@ -376,6 +382,7 @@ def group_of(system: System) -> Any:
         system.vehicle.block,
         system.dt,
         system.frame_steps,
+        system.substeps,
         system.drive.shape[1],
         id(system.geometry.table),
     )
@@ -404,8 +411,8 @@ class _Batch:
     def __init__(
         self, system: System, refresh_steps: int, make_lanes: MakeLanes = _Abreast
     ) -> None:
-        shortest = max(1, min(refresh_steps, round(REFRESH_TIME / system.dt)))
-        self.lanes = make_lanes(system, shortest)
+        steps = min(refresh_steps, round(REFRESH_TIME / system.dt))
+        self.lanes = make_lanes(system, max(1, steps // system.substeps))
         self.free = list(range(self.lanes.most))[::-1]
         self.jobs: dict[int, _Job] = {}  # by lane
 

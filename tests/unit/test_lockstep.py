@@ -126,6 +126,27 @@ def test_scenarios_are_drawn_as_they_are_needed_and_leaving_early_is_fine():
     assert len(drawn) < 200
 
 
+def test_what_is_slow_takes_longer_steps_at_next_to_no_loss():
+    """Without the hinge's first-order step, that is."""
+    cases = [
+        rq.scenario(synthetic={**SHORT, "pga": "1.2 g"}, hinge="elastic", speed=speed)
+        for speed in ("80 km/h", "0.01 km/h")
+    ]
+    assert [rq.assemble(case).with_substeps(10).substeps for case in cases] == [10, 2]
+    longer = dict(rq.simulate_many(cases, threads=1))
+    all_alike = [case.with_changes({"solver.substeps": 1}) for case in cases]
+    together = dict(rq.simulate_many(all_alike, threads=1))
+    for k in range(2):
+        assert longer[k]["status"] == together[k]["status"]
+        assert longer[k]["steps"] == together[k]["steps"]
+        for key in ("pbd_m", "pbv_m_s", "pba_m_s2", "wheel_load_peak_n", "uplift_ratio"):
+            assert longer[k][key] == pytest.approx(together[k][key], rel=1e-4), (k, key)
+        assert longer[k]["energy_residual"] == pytest.approx(0.0, abs=1e-5)
+        assert longer[k]["contact_energy_residual"] == pytest.approx(
+            together[k]["contact_energy_residual"], abs=3e-3
+        )
+
+
 @pytest.mark.parametrize("wrong", [{"threads": 0}, {"refresh_steps": 0}])
 def test_numbers_below_one_are_refused(wrong):
     with pytest.raises(rq.InputError, match="at least 1"):

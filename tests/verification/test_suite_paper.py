@@ -29,6 +29,9 @@ def test_eight_runs_of_a_record_end_well_balance_and_agree_in_lockstep(shared, r
     # the lockstep engine takes shortcuts; at most one of the eight may differ by more than its bar
     together = dict(rq.simulate_many(cases, threads=1))
     assert sum(differs(row, together[k]) for k, row in enumerate(rows)) <= 1
+    for row in together.values():
+        assert abs(row["energy_residual"]) < WHOLE
+        assert -CONTACT_GAIN < row["contact_energy_residual"] < CONTACT
 
 
 def differs(single, abreast):
@@ -51,8 +54,8 @@ NO_UPLIFT = (("RSN020_NCALIFH1", 1.0), ("RSN181_IMPVALLH1", 1.0), ("RSN178_IMPVA
 )
 def test_contact_neither_makes_nor_loses_energy_unaccounted(shared, record, scale, lifts):
     case = rq.scenario(record=record_path(shared, record), scale=scale, hinge="elastic")
-    row = rq.assess(rq.simulate(case))
-    assert (row["off_rail_time_s"] > 0.0) == lifts
-    assert row["contact_energy_residual"] > -CONTACT_GAIN
-    assert abs(row["contact_energy_residual"]) < CONTACT
-    assert abs(row["energy_residual"]) < WHOLE
+    for row in (rq.assess(rq.simulate(case)), dict(rq.simulate_many([case], threads=1))[0]):
+        assert (row["off_rail_time_s"] > 0.0) == lifts
+        assert row["contact_energy_residual"] > -CONTACT_GAIN
+        assert abs(row["contact_energy_residual"]) < CONTACT
+        assert abs(row["energy_residual"]) < WHOLE

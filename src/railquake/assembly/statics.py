@@ -14,7 +14,14 @@ from railquake.physics import constant, state
 from railquake.physics.profiles import Geometry
 from railquake.physics.vehicle import kernel_order
 
-__all__ = ["UNKNOWN_DEGRADATION", "ContactForces", "critical_time_step", "monotonic_hinge", "rest"]
+__all__ = [
+    "UNKNOWN_DEGRADATION",
+    "ContactForces",
+    "critical_time_step",
+    "fastest_rate",
+    "monotonic_hinge",
+    "rest",
+]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -269,6 +276,18 @@ def critical_time_step(
         middle = 0.5 * (low + high)
         low, high = (low, middle) if unstable(middle) else (middle, high)
     return low
+
+
+def fastest_rate(mass: Array, stiffness: Array, damping: Array) -> float:
+    """Largest magnitude of the eigenvalues of M x'' + C x' + K x = 0, 1/s.
+
+    Parameters are those of `critical_time_step`.
+    """
+    n = len(mass)
+    motion = np.block(
+        [[np.zeros((n, n)), np.eye(n)], [-stiffness / mass[:, None], -damping / mass[:, None]]]
+    )
+    return float(np.abs(np.linalg.eigvals(motion)).max())
 
 
 def contact_forces(

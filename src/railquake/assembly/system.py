@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -54,6 +54,8 @@ Laws = dict["Callable[..., Any]", "Callable[..., Any]"]
 GRAVITY = 9.80665  # m/s2
 UNKNOWN_DEGRADATION = statics.UNKNOWN_DEGRADATION
 MOST_STEPS = 1e10  # of a run; about an hour
+LONGEST_SLOW = 1e-4  # s; no step of structure and sprung bodies is longer, but for ``dt`` itself
+SLOW = 0.05  # rad; phase by which what is slow may turn in one of its steps
 SHORT_STEP = 1e-9  # s; below any critical one
 SHIFT_LIMIT = 0.127  # lateral shift that counts as derailed, m (5 in)
 ROLL_LIMIT = math.pi / 4.0  # relative roll that counts as overturned
@@ -88,6 +90,9 @@ class System:
         Laws and stages chosen for this scenario, to be bound.
     critical_dt : float
         Longest stable time step at static load, s.
+    slow_dt : float
+        Longest step, s, with which structure and sprung bodies may be marched by themselves; see
+        `march.step`.
     static_wheel_load : float
         Vertical load of one side's wheels together, N.
     """
@@ -101,6 +106,7 @@ class System:
     drive: Array
     laws: Laws
     critical_dt: float
+    slow_dt: float
     static_wheel_load: float
 
     @property
@@ -114,9 +120,27 @@ class System:
         return int(self.constants[constant.FRAME_STEPS, 0])
 
     @property
+    def substeps(self) -> int:
+        """Time steps in one of the structure and of the sprung bodies."""
+        return int(self.constants[constant.SUBSTEPS, 0])
+
+    @property
     def frames(self) -> int:
         """Frames in the run."""
         return len(self.drive) - 1
+
+    def with_substeps(self, most: int) -> System:
+        """The same with as many `substeps` as can be, up to ``most``; see `march.step`.
+
+        They divide a frame, take no longer than `LONGEST_SLOW` and leave slow what must be
+        (`slow_dt`).
+        """
+        longest = (1.0 + 1e-9) * min(LONGEST_SLOW, self.slow_dt) / self.dt
+        tried = range(min(most, max(1, int(longest))), 0, -1)
+        constants = self.constants.copy()
+        _fill_substeps(constants[:, 0], next(n for n in tried if self.frame_steps % n == 0))
+        constants.setflags(write=False)
+        return replace(self, constants=constants)
 
     def kernel(self, target: Target = SCALAR) -> Kernel:
         """Bind `march.march` with the chosen laws, or one of its kin.
@@ -173,7 +197,7 @@ def assemble(scenario: Scenario) -> System:
         rest = _assemble_at_rest(scenario, drive[0, [2, 4, 6]])
     else:
         rest = _remembered(scenario)
-    return System(
+    system = System(
         scenario,
         ground,
         rest.vehicle,
@@ -183,8 +207,10 @@ def assemble(scenario: Scenario) -> System:
         drive,
         rest.laws,
         rest.critical_dt,
+        rest.slow_dt,
         rest.static_wheel_load,
     )
+    return system if solver.substeps is None else system.with_substeps(solver.substeps)
 
 
 def critical_time_step(scenario: Scenario) -> float:
@@ -211,6 +237,7 @@ class _AtRest(NamedTuple):
     geometry: Geometry
     laws: Laws
     critical_dt: float
+    slow_dt: float
     static_wheel_load: float
 
 
@@ -273,7 +300,6 @@ def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
     Q = np.zeros((constant.VEHICLE + dofs // 3 + dofs + dofs * (dofs + 1), 1))
     q = Q[:, 0]
     q[constant.DT] = solver.step
-    q[constant.RATE] = 1.0 / solver.step
     q[constant.FRAME_STEPS] = frame_steps
     _fill_vehicle(q, scenario, matrices)
     _fill_contact(q, scenario)
@@ -284,9 +310,11 @@ def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
     q[constant.STATIC_WHEEL_LOAD] = load
 
     stiffness, hinge_law, parameters = _fill_support(q, support, solver, scenario.vehicle.mass)
+    _fill_substeps(q, 1)
     if isinstance(support, PrescribedTrack):
         laws[pier.move_structure] = pier.hold_structure
-        laws[pier.move_track] = pier.follow_track
+        laws[pier.place_track] = pier.place_prescribed_track
+        laws[pier.lead_track] = pier.lead_prescribed_track
         laws[march.begin_frame] = march.begin_frame_on_track
     elif hinge_law is not boucwen.advance:
         laws[boucwen.advance] = hinge_law
@@ -302,6 +330,7 @@ def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
     track_map[:, 2] = (-q[constant.MAP_H], -q[constant.MAP_E], -q[constant.MAP_PHI])
     track_map[0, 0] = q[constant.MAP_U]
     S[state.ON_TRACK] = 1.0
+    S[state.NEAR : state.NEAR + 2] = 1.0
     for side in range(2):  # no cell has been fetched yet
         S[state.CELL + side * state.CELL_ROWS + state.CELL_HELD] = -1.0
     S[state.LOWEST_LOAD] = load
@@ -335,9 +364,8 @@ def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
     S[state.TRACK_Y : state.TRACK_Y + 3, 0] = track
     _settle_forces(S, Q, geometry, laws, matrices)
 
-    critical = _critical_time_step(
-        vehicle_rest, drift, matrices, forces, track, solver.phi, solver.psi
-    )
+    contact = _linear_contact(vehicle_rest[-3:], drift, forces, track)
+    critical = _critical_time_step(contact, matrices, solver.phi, solver.psi)
     if solver.step > critical:
         raise InputError(
             f"solver.dt: {solver.step:g} s is above the critical time step of {critical:.3g} s "
@@ -347,7 +375,9 @@ def _assemble_at_rest(scenario: Scenario, prescribed: Array | None) -> _AtRest:
     for array in (S, Q, *geometry):
         if isinstance(array, np.ndarray):
             array.setflags(write=False)
-    return _AtRest(matrices, S, Q, geometry, laws, critical, load)
+    # the contact forces are carried on over a step of the structure: they must be resolved by it
+    slow = min(critical, _slow_time_step(contact, matrices, q, track_map))
+    return _AtRest(matrices, S, Q, geometry, laws, critical, slow, load)
 
 
 def _sizes(matrices: VehicleMatrices) -> dict[str, int]:
@@ -466,7 +496,6 @@ def _fill_support(
     """
     if not isinstance(support, Pier):
         q[constant.M_U : constant.M_U + 3] = 1.0
-        q[[constant.FLEX, constant.FLEX + 3, constant.FLEX + 5]] = 1.0
         q[constant.K0] = 1.0
         q[constant.TOLERANCE] = 1.0
         q[constant.MAX_ITERATIONS] = 1.0
@@ -482,13 +511,11 @@ def _fill_support(
     if support.p_delta:
         weight = (support.mass + (train_mass if support.coupled else 0.0)) * GRAVITY
         column = column + pier.geometric_stiffness(weight, support.length)
-    effective = newmark.effective_matrix(np.diag(mass), damping, column, q[constant.DT])
     upper = np.triu_indices(3)
     q[constant.PIER_LOAD] = support.mass
     q[constant.M_U : constant.M_U + 3] = mass
     q[constant.K : constant.K + 6] = column[upper]
     q[constant.C : constant.C + 6] = damping[upper]
-    q[constant.FLEX : constant.FLEX + 6] = np.linalg.inv(effective)[upper]
     q[constant.MAP_U] = 1.0
     q[constant.MAP_H] = support.track_height
     q[constant.MAP_E] = support.track_offset
@@ -498,6 +525,26 @@ def _fill_support(
     q[constant.K0 : constant.K0 + len(parameters)] = parameters
     law = boucwen.advance_elastic if support.hinge == "elastic" else boucwen.advance
     return column, law, parameters
+
+
+def _fill_substeps(q: Array, substeps: int) -> None:
+    """Time steps in one of structure and sprung bodies, and what of the structure depends on it."""
+    step = substeps * float(q[constant.DT])
+
+    def symmetric(first: int) -> Array:
+        matrix = np.zeros((3, 3))
+        matrix[np.triu_indices(3)] = q[first : first + 6]
+        return np.asarray(matrix + np.triu(matrix, 1).T)
+
+    effective = newmark.effective_matrix(
+        np.diag(q[constant.M_U : constant.M_U + 3]),
+        symmetric(constant.C),
+        symmetric(constant.K),
+        step,
+    )
+    q[constant.SUBSTEPS] = substeps
+    q[constant.RATE] = 1.0 / step
+    q[constant.FLEX : constant.FLEX + 6] = np.linalg.inv(effective)[np.triu_indices(3)]
 
 
 def hinge_parameters(hinge: BoucWenHinge, tolerance: float, iterations: int) -> tuple[float, ...]:
@@ -573,9 +620,15 @@ def _settle_forces(
     for patch in range(4):
         S[state.PATCH + patch * state.PATCH_ROWS + state.PATCH_HYSTERESIS, 0] = hysteresis
     _contact_stages(laws, matrices)(S, Q, geometry)
-    S[state.WORK_TRACK : state.WORK_TRACK + 1] = 0.0
     for old, new in ((state.TRACK_OLD, state.TRACK_FY), (state.WHEELSET_OLD, state.WHEELSET_Y)):
         S[old : old + 3] = S[new : new + 3]
+    # at rest the suspension bears what the contact pushes
+    dofs, bodies = len(matrices.mass), len(matrices.mass) // 3
+    free = slice(state.WHEELSET_FREE, state.WHEELSET_FREE + 3)
+    forces = [state.WHEELSET_Y, state.WHEELSET_PHI, state.WHEELSET_Z]
+    masses = constant.VEHICLE + bodies + np.array([2 * bodies - 2, 2 * bodies - 1, dofs - 1])
+    S[free] = -Q[masses] * S[forces]
+    S[state.WHEELSET_FREE_KNOWN : state.WHEELSET_FREE_KNOWN + 3] = S[free]
     powers = slice(state.IMPACT_POWER, state.IMPACT_POWER + 3)
     S[state.IMPACT_POWER_OLD : state.IMPACT_POWER_OLD + 3] = S[powers]
     # low-pass filters start from the steady state
@@ -591,24 +644,44 @@ def _settle_forces(
         S[row : row + state.FILTER_ROWS] = mean
 
 
-def _critical_time_step(
-    vehicle: Array,
-    drift: float,
-    matrices: VehicleMatrices,
-    forces: statics.ContactForces,
-    track: Array,
-    phi: float,
-    psi: float,
-) -> float:
-    """Critical time step with the contact linearised by central differences at static load."""
-    n = len(matrices.mass)
-    stiffness = matrices.stiffness.copy()
-    damping = matrices.damping.copy()
-    position = vehicle[-3:]
+def _linear_contact(
+    position: Array, drift: float, forces: statics.ContactForces, track: Array
+) -> tuple[Array, Array]:
+    """Stiffness and damping of the contact for the wheelset, by central differences at static load.
+
+    Two arrays of shape (3, 3).
+    """
     velocity = np.array([drift, 0.0, 0.0])
+    stiffness, damping = np.empty((2, 3, 3))
     for k, unit in enumerate(np.eye(3)):
         for matrix, move, turn in ((stiffness, 1e-6, 0.0), (damping, 0.0, 1e-4)):
             ahead, _ = forces(position + move * unit, velocity + turn * unit, track)
             behind, _ = forces(position - move * unit, velocity - turn * unit, track)
-            matrix[n - 3 :, n - 3 + k] -= (ahead - behind) / (2.0 * (move + turn))
+            matrix[:, k] = -(ahead - behind) / (2.0 * (move + turn))
+    return stiffness, damping
+
+
+def _critical_time_step(
+    contact: tuple[Array, Array], matrices: VehicleMatrices, phi: float, psi: float
+) -> float:
+    """Critical time step of the vehicle on a linear contact."""
+    stiffness, damping = matrices.stiffness.copy(), matrices.damping.copy()
+    stiffness[-3:, -3:] += contact[0]
+    damping[-3:, -3:] += contact[1]
     return statics.critical_time_step(matrices.mass, stiffness, damping, phi, psi)
+
+
+def _slow_time_step(
+    contact: tuple[Array, Array], matrices: VehicleMatrices, q: Array, track_map: Array
+) -> float:
+    """Longest step of what is slow: the vehicle off its rails, the pier's top on the contact.
+
+    The structure itself is marched implicitly.
+    """
+    rate = matrices.fastest_rate
+    if q[constant.REACTION] > 0.0:
+        mass = q[[constant.M_U, constant.M_2]]
+        top = track_map[:, [0, 2]]
+        stiffness, damping = (top.T @ matrix @ top for matrix in contact)
+        rate = max(rate, statics.fastest_rate(mass, stiffness, damping))
+    return SLOW / rate

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from railquake.assembly.statics import fastest_rate
 from railquake.physics.vehicle import element_matrix, element_row, lateral_block
 
 if TYPE_CHECKING:
@@ -42,6 +43,11 @@ class VehicleMatrices:
     def block(self) -> int:
         """Rows of the first block in the kernel's order; see `lateral_block`."""
         return lateral_block(self.stiffness, self.damping)
+
+    @cached_property
+    def fastest_rate(self) -> float:
+        """The vehicle's fastest rate where nothing holds its wheelset, 1/s."""
+        return fastest_rate(self.mass, self.stiffness, self.damping)
 
 
 def vehicle_matrices(vehicle: Vehicle) -> VehicleMatrices:

@@ -123,8 +123,9 @@ class Scenario(InputModel):
         return scenario_from_dict(self.to_dict(), overrides=changes, where="scenario")
 
     def with_step(self, step: float) -> Scenario:
-        """Make the same scenario with another time step, s."""
-        return self.model_copy(update={"solver": self.solver.model_copy(update={"dt": step})})
+        """Make the same scenario with another time step, s; all of it, unless it says otherwise."""
+        changes = {"dt": step, "substeps": self.solver.substeps or 1}
+        return self.model_copy(update={"solver": self.solver.model_copy(update=changes)})
 
     def to_dict(self) -> dict[str, Any]:
         """Return the tables of a case file that gives this scenario, all values in SI units."""

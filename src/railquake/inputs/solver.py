@@ -39,6 +39,15 @@ class Solver(InputModel):
         Literal["newton", "linearised"],
         Field(description="Newton iterations, or one consistently linearised solve per step"),
     ] = "newton"
+    substeps: Annotated[
+        Integer | None,
+        Field(
+            ge=1,
+            le=1000,
+            description="Time steps of the wheelset on its rails in one of structure and sprung "
+            "bodies, at most; without it 1 in a run by itself and 10 where many run abreast [1]",
+        ),
+    ] = None
     phi: Annotated[
         NonNegativeNumber, Field(le=1.0, description="Zhai's parameter of velocity [1]")
     ] = 0.5

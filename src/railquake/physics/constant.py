@@ -6,7 +6,7 @@ inverse masses and the upper triangles of K_v and of C_v (see `vehicle.packed`).
 
 from typing import Final
 
-DT: Final = 0  # time step, s
+DT: Final = 0  # time step, s; of the wheelset on its rails
 FRAME_STEPS: Final = 1  # time steps in a frame
 
 # --- pier (Eqs. 9, 10) --------------------------------------------------------------------------
@@ -73,5 +73,6 @@ FILTER_B1: Final = 76
 FILTER_B2: Final = 77
 FILTER_A1: Final = 78
 FILTER_A2: Final = 79
-RATE: Final = 80  # 1/dt, 1/s
-VEHICLE: Final = 81
+RATE: Final = 80  # 1/(SUBSTEPS dt), 1/s
+SUBSTEPS: Final = 81  # time steps in one of structure and sprung bodies, see `march.step`
+VEHICLE: Final = 82

@@ -14,7 +14,14 @@ from railquake.physics import constant, state
 from railquake.physics.contact import normal_force, onset_hysteresis
 from railquake.physics.creep import reduction_shen_hedrick_elkins
 from railquake.physics.elementary import floor_of, larger_of, sin_cos
-from railquake.physics.pier import move_structure, move_track, refresh_hinge
+from railquake.physics.pier import (
+    lead_track,
+    move_structure,
+    move_track,
+    orient_track,
+    place_track,
+    refresh_hinge,
+)
 from railquake.physics.profiles import (
     FIELDS,
     POSITIVE,
@@ -30,9 +37,13 @@ from railquake.physics.vehicle import (
     accelerate_lateral,
     accelerate_vertical,
     carry,
+    carry_suspension_on,
     damp,
+    note_place,
+    note_suspension,
     packed,
-    predict,
+    predict_sprung,
+    predict_wheelset,
     push_wheelset,
 )
 
@@ -40,7 +51,8 @@ __all__ = ["LANES", "march", "march_abreast", "march_on_device", "step"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-FAR = 1e-3  # m; no flange comes so much nearer between two looks, see `comes_near`
+LOOK = 2e-4  # s; twice what passes at most between two looks at flanges, see `look_at_flange`
+SPARE = 1e-4  # m
 # bound when a kernel is made
 BOUND = 5.0  # m or rad; what is farther from where it belongs has diverged
 LANES = 1  # scenarios abreast
@@ -48,63 +60,103 @@ STATE_ROWS = 1  # of a thread's own state and constants, see `march_on_device`
 CONSTANT_ROWS = 1
 
 
-def step(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
-    """One time step of the coupled system (Figure 4 of the paper)."""
+def step(S: Array, Q: Array, geometry: Geometry, lanes: int, substeps: int) -> None:
+    """One step of the coupled system (Figure 4 of the paper).
+
+    Structure, track, contact, vehicle.  The wheelset on its rails, whose contacts are stiffest by
+    far, may take several time steps while the structure and the sprung bodies take one.
+
+    Parameters
+    ----------
+    S, Q : array, shape (rows, lanes)
+        `state` and `constant`.
+    geometry : Geometry
+    lanes : int
+        Scenarios abreast.
+    substeps : int
+        Time steps of the wheelset; with one, all go together.
+    """
+    bodies = DOF_COUNT // 3
+    # structure, under the ground and the last contact forces
     for lane in range(lanes):
         move_ground(S, lane)
+        react(S, Q, lane)
+        place_track(S, Q, lane)
+        orient_track(S, lane)
     for lane in range(lanes):
         move_structure(S, Q, lane)
     for lane in range(lanes):
-        move_track(S, Q, lane)
-    for i in range(DOF_COUNT):
+        lead_track(S, Q, lane)
+        note_place(S, lane)
+    # sprung bodies
+    for i in range(2 * bodies - 2):
         for lane in range(lanes):
-            predict(S, Q, i, lane)
-    for lane in range(lanes):
-        carry(S, Q, lane)
-    for lane in range(lanes):
-        place_wheelset(S, Q, lane)
-    for lane in range(lanes):
-        locate(S, Q, geometry.shift_nodes, lane)
-    for lane in range(lanes):
-        fetch(S, Q, geometry, lane)
-    for lane in range(lanes):
-        press(S, Q, geometry, 0, 0, lane)
-        press(S, Q, geometry, 1, 0, lane)
-    if comes_near(S, 0, lanes):
+            predict_sprung(S, Q, i, lane)
+    for i in range(2 * bodies, DOF_COUNT - 1):
         for lane in range(lanes):
-            press(S, Q, geometry, 0, 1, lane)
-    if comes_near(S, 1, lanes):
+            predict_sprung(S, Q, i, lane)
+    # wheelset on the moving track
+    left_near = comes_near(S, 0, lanes)
+    right_near = comes_near(S, 1, lanes)
+    for n in range(substeps):
         for lane in range(lanes):
-            press(S, Q, geometry, 1, 1, lane)
+            move_track(S, Q, lane)
+            predict_wheelset(S, Q, lane)
+            place_wheelset(S, Q, lane)
+        for lane in range(lanes):
+            locate(S, Q, geometry.shift_nodes, lane)
+        for lane in range(lanes):
+            fetch(S, Q, geometry, lane)
+        for lane in range(lanes):
+            clear_forces(S, lane)
+            press(S, Q, geometry, 0, 0, lane)
+            press(S, Q, geometry, 1, 0, lane)
+        if left_near:
+            for lane in range(lanes):
+                press(S, Q, geometry, 0, 1, lane)
+        if right_near:
+            for lane in range(lanes):
+                press(S, Q, geometry, 1, 1, lane)
+        if n + 1 < substeps:
+            for lane in range(lanes):
+                carry_suspension_on(S, lane)
+        else:
+            for lane in range(lanes):
+                carry(S, Q, lane)
+            for lane in range(lanes):
+                for i in range(BLOCK):
+                    accelerate_lateral(S, Q, i, lane)
+            for lane in range(lanes):
+                for i in range(BLOCK, DOF_COUNT):
+                    accelerate_vertical(S, Q, i, lane)
+            for lane in range(lanes):
+                damp(S, Q, lane)
+            for lane in range(lanes):
+                note_suspension(S, Q, lane)
+        for lane in range(lanes):
+            add_up(S, Q, lane)
+            push_wheelset(S, Q, lane)
+            measure_contact(S, Q, lane)
     for lane in range(lanes):
-        react(S, Q, lane)
-    for lane in range(lanes):
-        for i in range(BLOCK):
-            accelerate_lateral(S, Q, i, lane)
-    for lane in range(lanes):
-        for i in range(BLOCK, DOF_COUNT):
-            accelerate_vertical(S, Q, i, lane)
-    for lane in range(lanes):
-        damp(S, Q, lane)
-    for lane in range(lanes):
-        push_wheelset(S, Q, lane)
-    for lane in range(lanes):
-        measure(S, Q, lane)
+        measure_structure(S, lane)
 
 
 def find_contact_forces(S: Array, Q: Array, geometry: Geometry) -> None:
     """The contact stages of `step` alone, for one scenario at rest or held."""
+    orient_track(S, 0)
     place_wheelset(S, Q, 0)
     locate(S, Q, geometry.shift_nodes, 0)
     fetch(S, Q, geometry, 0)
+    clear_forces(S, 0)
     for side in range(2):
         for zone in range(2):
             press(S, Q, geometry, side, zone, 0)
+    add_up(S, Q, 0)
     react(S, Q, 0)
 
 
 def move_ground(S: Array, lane: int) -> None:
-    """Stage: ground acceleration at the new time."""
+    """Stage: ground acceleration at the end of the structure's step."""
     S[state.GROUND, lane] += S[state.GROUND_SLOPE, lane]
     S[state.GROUND_Z, lane] += S[state.GROUND_Z_SLOPE, lane]
 
@@ -117,7 +169,8 @@ def place_wheelset(S: Array, Q: Array, lane: int) -> None:
     """
     y = state.VEHICLE + 2 * (DOF_COUNT // 3) - 2  # wheelset's rows; phi follows y
     z = state.VEHICLE + DOF_COUNT - 1
-    sine, cosine = sin_cos(S[state.TRACK_PHI, lane])
+    sine = S[state.TRACK_SIN, lane]
+    cosine = S[state.TRACK_COS, lane]
     dy = S[y, lane] - S[state.TRACK_Y, lane]
     dz = S[z, lane] - Q[constant.WHEELSET_HEIGHT, lane] - S[state.TRACK_Z, lane]
     vy = S[y + DOF_COUNT, lane] - S[state.TRACK_VY, lane]
@@ -126,8 +179,6 @@ def place_wheelset(S: Array, Q: Array, lane: int) -> None:
     shift = cosine * dy + sine * dz
     height = cosine * dz - sine * dy
     roll = S[y + 1, lane] - S[state.TRACK_PHI, lane]
-    S[state.TRACK_SIN, lane] = sine
-    S[state.TRACK_COS, lane] = cosine
     S[state.ARM_Y, lane] = dy
     S[state.ARM_Z, lane] = dz
     S[state.SHIFT, lane] = shift
@@ -137,9 +188,10 @@ def place_wheelset(S: Array, Q: Array, lane: int) -> None:
     S[state.HEIGHT_V, lane] = cosine * vz - sine * vy - turning * shift
     S[state.ROLL_V, lane] = S[y + DOF_COUNT + 1, lane] - turning
     S[state.ROLL_SIN, lane], S[state.ROLL_COS, lane] = sin_cos(roll)
-    # what the patches will add up
-    S[state.FORCE_Y, lane] = 0.0
-    S[state.FORCE_Z, lane] = 0.0
+
+
+def clear_forces(S: Array, lane: int) -> None:
+    """Stage: nothing of what the patches will add up."""
     S[state.FORCE_PSI, lane] = 0.0
     S[state.HERTZ_ENERGY, lane] = 0.0
     S[state.IMPACT_POWER, lane] = 0.0
@@ -396,16 +448,11 @@ def press(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: in
 
 
 def comes_near(S: Array, side: int, lanes: int) -> bool:
-    """Whether the flange of a side can touch its rail in any lane before it is looked at again.
-
-    A flange that was farther than `FAR` from its rail bears nothing until `look_again`, whatever
-    the other lanes do.
-    """
-    row = state.PATCH + (2 * side + 1) * state.PATCH_ROWS + state.PATCH_PENETRATION
-    nearest = -1.0
+    """Whether the flange of a side may touch its rail in any lane until it is looked at again."""
+    nearest = 0.0
     for lane in range(lanes):
-        nearest = max(nearest, S[row, lane])
-    return nearest > -FAR
+        nearest = max(nearest, S[state.NEAR + side, lane])
+    return nearest > 0.0
 
 
 def may_be_near(S: Array, side: int, lanes: int) -> bool:
@@ -413,10 +460,36 @@ def may_be_near(S: Array, side: int, lanes: int) -> bool:
     return True
 
 
-def look_again(S: Array, lane: int) -> None:
-    """Stage, now and then where many run abreast: both flanges are looked at in the next step."""
-    S[state.PATCH + state.PATCH_ROWS + state.PATCH_PENETRATION, lane] = 0.0
-    S[state.PATCH + 3 * state.PATCH_ROWS + state.PATCH_PENETRATION, lane] = 0.0
+def look_again(S: Array, Q: Array, lane: int) -> None:
+    """Stage, now and then where many run abreast: how near the flanges are to their rails."""
+    look_at_flange(S, Q, 0, lane)
+    look_at_flange(S, Q, 1, lane)
+
+
+def look_at_flange(S: Array, Q: Array, side: int, lane: int) -> None:
+    """`look_again` for one side.
+
+    A flange that would not reach its rail within `LOOK` (and a time step) if it went on as it does,
+    with `SPARE` left for what it is hurried, bears nothing until it is looked at again.
+    """
+    sign = 2.0 * side - 1.0
+    cell = state.CELL + side * state.CELL_ROWS
+    gap, slope, gap_psi = gap_in_cell(
+        S,
+        state.POLYNOMIAL + (2 * side + 1) * state.POLYNOMIAL_ROWS,
+        S[cell + state.CELL_SHIFT, lane],
+        S[cell + state.CELL_ROLL, lane],
+        lane,
+    )
+    penetration = S[state.HEIGHT, lane] - gap
+    closing = (
+        S[state.HEIGHT_V, lane]
+        - slope * S[cell + state.CELL_SHIFT_RATE, lane] * sign * S[state.SHIFT_V, lane]
+        - gap_psi * S[cell + state.CELL_ROLL_RATE, lane] * sign * S[state.ROLL_V, lane]
+    )
+    horizon = LOOK + Q[constant.DT, lane]
+    reaches = penetration + max(closing, 0.0) * horizon + SPARE > 0.0
+    S[state.NEAR + side, lane] = S[state.ON_TRACK, lane] if reaches else 0.0
 
 
 def press_closed(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int) -> None:
@@ -448,8 +521,11 @@ def bear(
     sign = 2.0 * side - 1.0
     row = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
     height = S[state.HEIGHT, lane]
+    penetration = height - gap
+    if zone == 1:
+        penetration *= S[state.NEAR + side, lane]
     hysteresis, q_y, q_z, q_psi, stored, lost, crept, spun = patch_forces(
-        height - gap,
+        penetration,
         slope,
         gap_psi,
         rail_z - height,
@@ -467,57 +543,86 @@ def bear(
         Q[constant.FRICTION, lane],
         Q[constant.INVERSE_SPEED, lane],
     )
-    S[row + state.PATCH_PENETRATION, lane] = height - gap
+    S[row + state.PATCH_PENETRATION, lane] = penetration
     S[row + state.PATCH_HYSTERESIS, lane] = hysteresis
+    S[state.FORCE_PSI, lane] += sign * q_psi
+    S[state.HERTZ_ENERGY, lane] += stored
+    S[state.IMPACT_POWER, lane] += lost
+    S[state.CREEP_POWER, lane] += crept
+    S[state.SPIN_POWER, lane] += spun
+    S[state.LOAD_LEFT + side, lane] -= q_z
+    S[state.LATERAL_LEFT + side, lane] -= sign * q_y
+
+
+def add_up(S: Array, Q: Array, lane: int) -> None:
+    """Stage: forces and powers of all wheels of the section; the forces in ground axes, too."""
     count = Q[constant.AXLES, lane] * S[state.ON_TRACK, lane]
-    across = count * sign * q_y
-    down = count * q_z
-    S[state.FORCE_Y, lane] += across
-    S[state.FORCE_Z, lane] += down
-    S[state.FORCE_PSI, lane] += count * sign * q_psi
-    S[state.HERTZ_ENERGY, lane] += count * stored
-    S[state.IMPACT_POWER, lane] += count * lost
-    S[state.CREEP_POWER, lane] += count * crept
-    S[state.SPIN_POWER, lane] += count * spun
-    S[state.LOAD_LEFT + side, lane] -= down
-    S[state.LATERAL_LEFT + side, lane] -= across
+    S[state.LOAD_LEFT, lane] *= count
+    S[state.LOAD_RIGHT, lane] *= count
+    S[state.LATERAL_LEFT, lane] *= count
+    S[state.LATERAL_RIGHT, lane] *= count
+    S[state.FORCE_PSI, lane] *= count
+    S[state.HERTZ_ENERGY, lane] *= count
+    S[state.IMPACT_POWER, lane] *= count
+    S[state.CREEP_POWER, lane] *= count
+    S[state.SPIN_POWER, lane] *= count
+    force_y = -(S[state.LATERAL_LEFT, lane] + S[state.LATERAL_RIGHT, lane])
+    force_z = -(S[state.LOAD_LEFT, lane] + S[state.LOAD_RIGHT, lane])
+    sine = S[state.TRACK_SIN, lane]
+    cosine = S[state.TRACK_COS, lane]
+    S[state.FORCE_Y, lane] = force_y
+    S[state.FORCE_Z, lane] = force_z
+    S[state.WHEELSET_Y, lane] = cosine * force_y - sine * force_z
+    S[state.WHEELSET_Z, lane] = sine * force_y + cosine * force_z
+    S[state.WHEELSET_PHI, lane] = S[state.FORCE_PSI, lane]
 
 
 def react(S: Array, Q: Array, lane: int) -> None:
-    """Stage: contact forces turned to ground axes, on the wheelset and on the pier's top node."""
-    sine = S[state.TRACK_SIN, lane]
-    cosine = S[state.TRACK_COS, lane]
-    dy = S[state.ARM_Y, lane]
-    dz = S[state.ARM_Z, lane]
-    force_y = cosine * S[state.FORCE_Y, lane] - sine * S[state.FORCE_Z, lane]
-    force_z = sine * S[state.FORCE_Y, lane] + cosine * S[state.FORCE_Z, lane]
-    moment = -(S[state.FORCE_PSI, lane] + dy * force_z - dz * force_y)
-    S[state.WHEELSET_Y, lane] = force_y
-    S[state.WHEELSET_Z, lane] = force_z
-    S[state.WHEELSET_PHI, lane] = S[state.FORCE_PSI, lane]
-    # work on the track: by the force that was on it during this step, the last one
-    S[state.WORK_TRACK, lane] += 0.5 * (
-        (S[state.TRACK_OLD, lane] + S[state.TRACK_FY, lane]) * S[state.TRACK_STEP_Y, lane]
-        + (S[state.TRACK_OLD + 1, lane] + S[state.TRACK_FZ, lane]) * S[state.TRACK_STEP_Z, lane]
-        + (S[state.TRACK_OLD + 2, lane] + S[state.TRACK_MX, lane]) * S[state.TRACK_STEP_PHI, lane]
+    """Stage: the train's forces on the track, and by it on the pier's top node.
+
+    They are those of the last contact, one time step before; where the structure takes longer
+    steps, they are carried on linearly by what is missing.
+    """
+    force_y = S[state.WHEELSET_Y, lane]
+    force_z = S[state.WHEELSET_Z, lane]
+    moment = -(
+        S[state.WHEELSET_PHI, lane]
+        + S[state.ARM_Y, lane] * force_z
+        - S[state.ARM_Z, lane] * force_y
     )
-    S[state.TRACK_OLD, lane] = S[state.TRACK_FY, lane]
-    S[state.TRACK_OLD + 1, lane] = S[state.TRACK_FZ, lane]
-    S[state.TRACK_OLD + 2, lane] = S[state.TRACK_MX, lane]
-    S[state.TRACK_FY, lane] = -force_y
-    S[state.TRACK_FZ, lane] = -force_z
-    S[state.TRACK_MX, lane] = moment
-    on_phi = (
-        -Q[constant.MAP_H, lane] * force_y
-        - Q[constant.MAP_E, lane] * force_z
-        + Q[constant.MAP_PHI, lane] * moment
+    ahead = 1.0 - Q[constant.DT, lane] * Q[constant.RATE, lane]
+    on_y = load_track(S, 0, -force_y, ahead, lane)
+    on_z = load_track(S, 1, -force_z, ahead, lane)
+    on_phi = load_track(S, 2, moment, ahead, lane)
+    S[state.NODE_U, lane] = Q[constant.MAP_U, lane] * on_y
+    S[state.NODE_THETA2, lane] = -(
+        Q[constant.MAP_H, lane] * on_y
+        + Q[constant.MAP_E, lane] * on_z
+        + Q[constant.MAP_PHI, lane] * on_phi
     )
-    S[state.NODE_U, lane] = -Q[constant.MAP_U, lane] * force_y
-    S[state.NODE_THETA2, lane] = -on_phi
 
 
-def measure(S: Array, Q: Array, lane: int) -> None:
-    """Stage: peaks, losses and times that need every step."""
+def load_track(S: Array, k: int, contact: float, ahead: float, lane: int) -> float:
+    """A force on the track during the coming step of the structure, from the contact's."""
+    force: float = contact + ahead * (contact - S[state.TRACK_CONTACT + k, lane])
+    S[state.TRACK_CONTACT + k, lane] = contact
+    S[state.TRACK_OLD + k, lane] = S[state.TRACK_FY + k, lane]
+    S[state.TRACK_FY + k, lane] = force
+    return force
+
+
+def measure_structure(S: Array, lane: int) -> None:
+    """Stage: peaks of the structure."""
+    raise_peak(S, state.PEAK_U, S[state.U, lane], lane)
+    raise_peak(S, state.PEAK_U_V, S[state.U_V, lane], lane)
+    raise_peak(S, state.PEAK_U_A, S[state.U_A, lane] + S[state.GROUND, lane], lane)
+    raise_peak(S, state.PEAK_THETA1, S[state.THETA1, lane], lane)
+    raise_peak(S, state.PEAK_MOMENT, S[state.MOMENT, lane], lane)
+    raise_peak(S, state.PEAK_THETA2, S[state.THETA2, lane], lane)
+
+
+def measure_contact(S: Array, Q: Array, lane: int) -> None:
+    """Stage: peaks, losses and times of wheel and rail."""
     dt = Q[constant.DT, lane]
     half = 0.5 * dt
     impact = S[state.IMPACT_POWER, lane]
@@ -533,12 +638,6 @@ def measure(S: Array, Q: Array, lane: int) -> None:
     lateral = -S[state.FORCE_Y, lane]
     load_left = S[state.LOAD_LEFT, lane]
     load_right = S[state.LOAD_RIGHT, lane]
-    raise_peak(S, state.PEAK_U, S[state.U, lane], lane)
-    raise_peak(S, state.PEAK_U_V, S[state.U_V, lane], lane)
-    raise_peak(S, state.PEAK_U_A, S[state.U_A, lane] + S[state.GROUND, lane], lane)
-    raise_peak(S, state.PEAK_THETA1, S[state.THETA1, lane], lane)
-    raise_peak(S, state.PEAK_MOMENT, S[state.MOMENT, lane], lane)
-    raise_peak(S, state.PEAK_THETA2, S[state.THETA2, lane], lane)
     raise_peak(S, state.PEAK_ROLL, on * S[state.ROLL, lane], lane)
     raise_peak(S, state.PEAK_SHIFT, on * S[state.SHIFT, lane], lane)
     raise_peak(S, state.PEAK_LOAD, max(load_left, load_right), lane)
@@ -705,9 +804,7 @@ def release(S: Array, Q: Array, lane: int) -> None:
     S[state.ON_TRACK, lane] *= staying
     for i in range(DOF_COUNT, 4 * DOF_COUNT):
         S[state.VEHICLE + i, lane] *= staying
-    S[state.NODE_U, lane] *= staying
-    S[state.NODE_THETA2, lane] *= staying
-    for k in range(state.PATCHES_END, state.PATCHES_END + 26):
+    for k in range(state.PATCHES_END, state.FORCES_END):
         S[k, lane] *= staying
     S[state.DASHPOT_POWER, lane] *= staying
 
@@ -718,8 +815,8 @@ def begin_frame(S: Array, Q: Array, drive: Array, frame: int, lane: int) -> None
 
 
 def shake(S: Array, Q: Array, drive: Array, frame: int, lane: int) -> None:
-    """Frame stage: ground acceleration at the frame's start and its change per step."""
-    steps = Q[constant.FRAME_STEPS, lane]
+    """Frame stage: ground acceleration at the frame's start; its change per structure's step."""
+    steps = Q[constant.FRAME_STEPS, lane] / Q[constant.SUBSTEPS, lane]
     S[state.GROUND, lane] = drive[frame, 0]
     S[state.GROUND_Z, lane] = drive[frame, 1]
     S[state.GROUND_SLOPE, lane] = (drive[frame + 1, 0] - drive[frame, 0]) / steps
@@ -787,12 +884,13 @@ def march(
     S[:, :] = state_in
     Q[:, :] = constants
     steps = int(Q[constant.FRAME_STEPS, 0])
+    substeps = int(Q[constant.SUBSTEPS, 0])
     frame = first_frame
     end = first_frame + frames
     while frame < end:
         begin_frame(S, Q, drive, frame, 0)
-        for _ in range(steps):
-            step(S, Q, geometry, LANES)
+        for _ in range(steps // substeps):
+            step(S, Q, geometry, LANES, substeps)
         frame += 1
         S[state.TIME, 0] = frame * steps * Q[constant.DT, 0]
         filter_forces(S, Q, steps, 0)
@@ -852,18 +950,19 @@ def march_abreast(
     S[:, :] = state_in
     Q[:, :] = constants
     steps = int(Q[constant.FRAME_STEPS, 0])
+    substeps = int(Q[constant.SUBSTEPS, 0])
     frame = 0
     end = frames
     while frame < end:
         for lane in range(lanes):
             begin_frame(S, Q, drive, first[lane] + frame * stride[lane], lane)
-        for n in range(steps):
+        for n in range(steps // substeps):
             if n % refresh == 0:
                 for lane in range(lanes):
                     refresh_hinge(S, Q, lane)
                 for lane in range(lanes):
-                    look_again(S, lane)
-            step(S, Q, geometry, lanes)
+                    look_again(S, Q, lane)
+            step(S, Q, geometry, lanes, substeps)
         frame += 1
         for lane in range(lanes):
             S[state.TIME, lane] = (done[lane] + frame) * steps * Q[constant.DT, lane]
@@ -932,15 +1031,16 @@ def march_on_device(
         for row in range(CONSTANT_ROWS):
             Q[row, 0] = constants[column, row]
         steps = int(Q[constant.FRAME_STEPS, 0])
+        substeps = int(Q[constant.SUBSTEPS, 0])
         frame = done[column]
         end = frame + count
         while frame < end:
             begin_frame(S, Q, drive, first[column] + frame, 0)
-            for n in range(steps):
+            for n in range(steps // substeps):
                 if n % refresh == 0:
                     refresh_hinge(S, Q, 0)
-                    look_again(S, 0)
-                step(S, Q, geometry, LANES)
+                    look_again(S, Q, 0)
+                step(S, Q, geometry, LANES, substeps)
             frame += 1
             S[state.TIME, 0] = frame * steps * Q[constant.DT, 0]
             filter_forces(S, Q, steps, 0)

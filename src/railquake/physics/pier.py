@@ -22,15 +22,20 @@ import numpy as np
 
 from railquake.physics import constant, state
 from railquake.physics.boucwen import advance, damage_index, degradation, pinched_stiffness
+from railquake.physics.elementary import sin_cos
 from railquake.physics.newmark import new_acceleration, new_velocity
 
 __all__ = [
-    "follow_track",
     "geometric_stiffness",
     "hold_structure",
+    "lead_prescribed_track",
+    "lead_track",
     "move_structure",
     "move_track",
     "natural_frequencies",
+    "orient_track",
+    "place_prescribed_track",
+    "place_track",
     "rayleigh_damping",
     "refresh_hinge",
     "stiffness_matrix",
@@ -236,47 +241,115 @@ def refresh_hinge(S: Array, Q: Array, lane: int) -> None:
     )
 
 
-def move_track(S: Array, Q: Array, lane: int) -> None:
-    """Stage: position and velocity of the track's origin from the pier's top node."""
+def track_motion(S: Array, Q: Array, lane: int) -> tuple[float, float, float, float, float, float]:
+    """Position (y, z, phi) and velocity of the track's origin, from the pier's top node."""
     phi = -S[state.THETA2, lane]
     v_phi = -S[state.THETA2_V, lane]
-    y = Q[constant.MAP_U, lane] * S[state.U, lane] + Q[constant.MAP_H, lane] * phi
-    z = Q[constant.MAP_E, lane] * phi
-    S[state.TRACK_STEP_Y, lane] = y - S[state.TRACK_Y, lane]
-    S[state.TRACK_STEP_Z, lane] = z - S[state.TRACK_Z, lane]
-    S[state.TRACK_STEP_PHI, lane] = Q[constant.MAP_PHI, lane] * phi - S[state.TRACK_PHI, lane]
+    return (
+        Q[constant.MAP_U, lane] * S[state.U, lane] + Q[constant.MAP_H, lane] * phi,
+        Q[constant.MAP_E, lane] * phi,
+        Q[constant.MAP_PHI, lane] * phi,
+        Q[constant.MAP_U, lane] * S[state.U_V, lane] + Q[constant.MAP_H, lane] * v_phi,
+        Q[constant.MAP_E, lane] * v_phi,
+        Q[constant.MAP_PHI, lane] * v_phi,
+    )
+
+
+def place_track(S: Array, Q: Array, lane: int) -> None:
+    """Stage: the track where the pier's top node holds it, before the structure moves on."""
+    y, z, phi, v_y, v_z, v_phi = track_motion(S, Q, lane)
     S[state.TRACK_Y, lane] = y
     S[state.TRACK_Z, lane] = z
-    S[state.TRACK_PHI, lane] = Q[constant.MAP_PHI, lane] * phi
-    S[state.TRACK_VY, lane] = (
-        Q[constant.MAP_U, lane] * S[state.U_V, lane] + Q[constant.MAP_H, lane] * v_phi
+    S[state.TRACK_PHI, lane] = phi
+    S[state.TRACK_VY, lane] = v_y
+    S[state.TRACK_VZ, lane] = v_z
+    S[state.TRACK_VPHI, lane] = v_phi
+
+
+def orient_track(S: Array, lane: int) -> None:
+    """Stage: sine and cosine of the track's roll."""
+    S[state.TRACK_SIN, lane], S[state.TRACK_COS, lane] = sin_cos(S[state.TRACK_PHI, lane])
+
+
+def lead_track(S: Array, Q: Array, lane: int) -> None:
+    """Stage: how the track gets to where the pier's top node has moved."""
+    y, z, phi, v_y, v_z, v_phi = track_motion(S, Q, lane)
+    lead(S, Q, 0, y, v_y, lane)
+    lead(S, Q, 1, z, v_z, lane)
+    lead(S, Q, 2, phi, v_phi, lane)
+
+
+def lead(S: Array, Q: Array, k: int, position: float, velocity: float, lane: int) -> None:
+    """Constant acceleration that brings the track there by the end of the structure's step.
+
+    It is Newmark's own.  The train's force on the track works on the way.
+    """
+    S[state.TRACK_AY + k, lane] = Q[constant.RATE, lane] * (velocity - S[state.TRACK_VY + k, lane])
+    S[state.WORK_TRACK, lane] += (
+        0.5
+        * (S[state.TRACK_OLD + k, lane] + S[state.TRACK_FY + k, lane])
+        * (position - S[state.TRACK_Y + k, lane])
     )
-    S[state.TRACK_VZ, lane] = Q[constant.MAP_E, lane] * v_phi
-    S[state.TRACK_VPHI, lane] = Q[constant.MAP_PHI, lane] * v_phi
+
+
+def move_track(S: Array, Q: Array, lane: int) -> None:
+    """Stage: the track's origin at the new time, within the structure's step."""
+    dt = Q[constant.DT, lane]
+    move_on(S, 0, dt, lane)
+    move_on(S, 1, dt, lane)
+    turn = move_on(S, 2, dt, lane)
+    # to the second order: the third is below 1e-13 for any roll that is no derailment's
+    sine = S[state.TRACK_SIN, lane]
+    cosine = S[state.TRACK_COS, lane]
+    S[state.TRACK_SIN, lane] = sine + turn * (cosine - 0.5 * turn * sine)
+    S[state.TRACK_COS, lane] = cosine - turn * (sine + 0.5 * turn * cosine)
+
+
+def move_on(S: Array, k: int, dt: float, lane: int) -> float:
+    """Position and velocity under constant acceleration; by how far it has moved."""
+    v = S[state.TRACK_VY + k, lane]
+    dv = dt * S[state.TRACK_AY + k, lane]
+    step: float = dt * (v + 0.5 * dv)
+    S[state.TRACK_Y + k, lane] += step
+    S[state.TRACK_VY + k, lane] = v + dv
+    return step
 
 
 def hold_structure(S: Array, Q: Array, lane: int) -> None:
     """Stage in the place of `move_structure` where the track's motion is prescribed."""
 
 
-def follow_track(S: Array, Q: Array, lane: int) -> None:
-    """Stage in the place of `move_track`: the prescribed motion, cubic within a frame.
+def prescribed_motion(S: Array, k: int, lane: int) -> tuple[float, float, float]:
+    """Position, velocity and acceleration of a prescribed track: a cubic within each frame."""
+    place = S[state.TRACK_PLACE, lane]
+    rate = S[state.TRACK_RATE, lane]
+    row = state.TRACK_CUBIC + 4 * k
+    c1, c2, c3 = S[row + 1, lane], S[row + 2, lane], S[row + 3, lane]
+    return (
+        S[row, lane] + place * (c1 + place * (c2 + place * c3)),
+        rate * (c1 + place * (2.0 * c2 + 3.0 * place * c3)),
+        rate * rate * (2.0 * c2 + 6.0 * place * c3),
+    )
+
+
+def place_prescribed_track(S: Array, Q: Array, lane: int) -> None:
+    """Stage in the place of `place_track` where the track's motion is prescribed."""
+    for k in range(3):
+        position, velocity, _ = prescribed_motion(S, k, lane)
+        S[state.TRACK_Y + k, lane] = position
+        S[state.TRACK_VY + k, lane] = velocity
+
+
+def lead_prescribed_track(S: Array, Q: Array, lane: int) -> None:
+    """Stage in the place of `lead_track` where the track's motion is prescribed.
 
     The bridge's measures are then those of the track's origin.
     """
-    S[state.TRACK_PLACE, lane] += 1.0 / Q[constant.FRAME_STEPS, lane]
-    place = S[state.TRACK_PLACE, lane]
-    rate = S[state.TRACK_RATE, lane]
+    S[state.TRACK_PLACE, lane] += Q[constant.SUBSTEPS, lane] / Q[constant.FRAME_STEPS, lane]
     for k in range(3):
-        row = state.TRACK_CUBIC + 4 * k
-        c1, c2, c3 = S[row + 1, lane], S[row + 2, lane], S[row + 3, lane]
-        position = S[row, lane] + place * (c1 + place * (c2 + place * c3))
-        S[state.TRACK_STEP_Y + k, lane] = position - S[state.TRACK_Y + k, lane]
-        S[state.TRACK_Y + k, lane] = position
-        S[state.TRACK_VY + k, lane] = rate * (c1 + place * (2.0 * c2 + 3.0 * place * c3))
-    row = state.TRACK_CUBIC
-    S[state.U, lane] = S[state.TRACK_Y, lane]
-    S[state.U_V, lane] = S[state.TRACK_VY, lane]
-    S[state.U_A, lane] = rate * rate * (2.0 * S[row + 2, lane] + 6.0 * place * S[row + 3, lane])
-    S[state.THETA2, lane] = -S[state.TRACK_PHI, lane]
-    S[state.THETA2_V, lane] = -S[state.TRACK_VPHI, lane]
+        position, velocity, _ = prescribed_motion(S, k, lane)
+        lead(S, Q, k, position, velocity, lane)
+    S[state.U, lane], S[state.U_V, lane], S[state.U_A, lane] = prescribed_motion(S, 0, lane)
+    phi, v_phi, _ = prescribed_motion(S, 2, lane)
+    S[state.THETA2, lane] = -phi
+    S[state.THETA2_V, lane] = -v_phi

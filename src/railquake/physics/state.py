@@ -7,7 +7,7 @@ increment of displacement, in the order of `vehicle.kernel_order`.
 
 # ruff: noqa: E501
 
-# --- ground: acceleration and its change per step within the frame, m/s2; z is positive down
+# --- ground: acceleration and its change per step of the structure, m/s2; z is positive down
 (GROUND, GROUND_SLOPE, GROUND_Z, GROUND_Z_SLOPE) = range(4)
 
 # --- pier (Eqs. 9, 10): u, theta_1 (base), theta_2 (top); velocities; accelerations
@@ -18,9 +18,10 @@ increment of displacement, in the order of `vehicle.kernel_order`.
 (Z, Z_STEP, EPS, X_MAX, MOMENT) = range(13, 18)
 (DAMAGE, DEGRADED_A, DEGRADED_BETA, DEGRADED_LOG, PINCHED) = range(18, 23)
 
-# --- track's origin: position, velocity, last increment of position; sine and cosine of its roll
+# --- track's origin: position, velocity, acceleration within the structure's step; sine and cosine
+# of its roll
 (TRACK_Y, TRACK_Z, TRACK_PHI, TRACK_VY, TRACK_VZ, TRACK_VPHI) = range(23, 29)
-(TRACK_STEP_Y, TRACK_STEP_Z, TRACK_STEP_PHI, TRACK_SIN, TRACK_COS) = range(29, 34)
+(TRACK_AY, TRACK_AZ, TRACK_APHI, TRACK_SIN, TRACK_COS) = range(29, 34)
 
 # --- wheelset from the track's origin in ground axes; in track axes: Y, Z (negative: above the
 # rails), psi; rates; sine and cosine of psi
@@ -48,7 +49,9 @@ PATCH_ROWS = 2
     PATCH_HYSTERESIS,  # chi/K, frozen at the onset of this contact, s/m; 0 while open
     PATCH_PENETRATION,  # vertical, m; negative: gap
 ) = range(PATCH_ROWS)
-PATCHES_END = PATCH + 4 * PATCH_ROWS
+# for the flange of each side (left, right) 1, or 0 where it cannot touch its rail for some steps
+NEAR = PATCH + 4 * PATCH_ROWS
+PATCHES_END = NEAR + 2
 
 # --- contact, all wheels of the section: forces on the wheelset in track axes, moment about its centre
 (FORCE_Y, FORCE_Z, FORCE_PSI) = range(PATCHES_END, PATCHES_END + 3)
@@ -56,12 +59,24 @@ PATCHES_END = PATCH + 4 * PATCH_ROWS
 (IMPACT_POWER_OLD, CREEP_POWER_OLD, SPIN_POWER_OLD) = range(PATCHES_END + 7, PATCHES_END + 10)
 # vertical load and lateral force of the wheels of each side on their rail
 (LOAD_LEFT, LOAD_RIGHT, LATERAL_LEFT, LATERAL_RIGHT) = range(PATCHES_END + 10, PATCHES_END + 14)
-# the same forces in ground axes: on the wheelset, on the track's origin, on the pier's top node
+# the same forces in ground axes on the wheelset, now and in the step before
 (WHEELSET_Y, WHEELSET_Z, WHEELSET_PHI) = range(PATCHES_END + 14, PATCHES_END + 17)
 WHEELSET_OLD = PATCHES_END + 17
+# what acts on the track's origin during a step of the structure, and did during the one before; the
+# contact force on it at the begin of each; the same on the pier's top node
 (TRACK_FY, TRACK_FZ, TRACK_MX) = range(PATCHES_END + 20, PATCHES_END + 23)
 TRACK_OLD = PATCHES_END + 23
-(NODE_U, NODE_THETA2) = range(PATCHES_END + 26, PATCHES_END + 28)
+TRACK_CONTACT = PATCHES_END + 26
+(NODE_U, NODE_THETA2) = range(PATCHES_END + 29, PATCHES_END + 31)
+FORCES_END = PATCHES_END + 31
+# acceleration of the wheelset (y, phi, z) but for the contact: from suspension, ground and gravity;
+# as last evaluated; its change per step
+WHEELSET_FREE = FORCES_END
+WHEELSET_FREE_KNOWN = FORCES_END + 3
+WHEELSET_FREE_SLOPE = FORCES_END + 6
+# where the wheelset was before the structure's step (y, z)
+WHEELSET_FROM = FORCES_END + 9
+MOTION_END = FORCES_END + 11
 
 # --- energy audit, J
 (
@@ -79,8 +94,8 @@ TRACK_OLD = PATCHES_END + 23
     DASHPOT_POWER_OLD,
     VEHICLE_ENERGY,  # kinetic and elastic, kept when the vehicle leaves the model
     HERTZ_LEFT,  # Hertz energy that goes with it
-) = range(PATCHES_END + 28, PATCHES_END + 42)
-AUDIT_END = PATCHES_END + 42
+) = range(MOTION_END, MOTION_END + 14)
+AUDIT_END = MOTION_END + 14
 
 # --- peaks of absolute values, from every step
 (

@@ -25,14 +25,18 @@ __all__ = [
     "accelerate_lateral",
     "accelerate_vertical",
     "carry",
+    "carry_suspension_on",
     "damp",
     "element_matrix",
     "element_row",
     "fixed_wheelset_modes",
     "kernel_order",
     "lateral_block",
+    "note_place",
+    "note_suspension",
     "packed",
-    "predict",
+    "predict_sprung",
+    "predict_wheelset",
     "push_wheelset",
 ]
 
@@ -136,9 +140,27 @@ def packed(i: int, j: int, n: int) -> int:
     return ((low * (2 * n - low - 1)) >> 1) + max(i, j)
 
 
-def predict(S: Array, Q: Array, i: int, lane: int) -> None:
-    """Stage: displacement and velocity of degree of freedom ``i`` at the new time (Zhai)."""
+def note_place(S: Array, lane: int) -> None:
+    """Stage: where the wheelset is before the structure's step."""
+    S[state.WHEELSET_FROM, lane] = S[state.VEHICLE + 2 * (DOF_COUNT // 3) - 2, lane]
+    S[state.WHEELSET_FROM + 1, lane] = S[state.VEHICLE + DOF_COUNT - 1, lane]
+
+
+def predict_sprung(S: Array, Q: Array, i: int, lane: int) -> None:
+    """Stage: a sprung body's degree of freedom ``i`` at the end of the structure's step."""
+    predict(S, Q, i, Q[constant.SUBSTEPS, lane] * Q[constant.DT, lane], lane)
+
+
+def predict_wheelset(S: Array, Q: Array, lane: int) -> None:
+    """Stage: the wheelset at the new time."""
     dt = Q[constant.DT, lane]
+    predict(S, Q, 2 * (DOF_COUNT // 3) - 2, dt, lane)
+    predict(S, Q, 2 * (DOF_COUNT // 3) - 1, dt, lane)
+    predict(S, Q, DOF_COUNT - 1, dt, lane)
+
+
+def predict(S: Array, Q: Array, i: int, dt: float, lane: int) -> None:
+    """Displacement and velocity of degree of freedom ``i`` a time ``dt`` later (Zhai)."""
     x = state.VEHICLE + i
     v = x + DOF_COUNT
     a = v + DOF_COUNT
@@ -161,10 +183,16 @@ def carry(S: Array, Q: Array, lane: int) -> None:
     step = state.VEHICLE + 4 * DOF_COUNT
     lateral = 0.0
     vertical = 0.0
-    for k in range(bodies):
+    for k in range(bodies - 1):
         mass = Q[constant.VEHICLE + k, lane]
         lateral += mass * S[step + 2 * k, lane]
         vertical += mass * S[step + 2 * bodies + k, lane]
+    # the wheelset has taken several steps
+    mass = Q[constant.VEHICLE + bodies - 1, lane]
+    y = S[state.VEHICLE + 2 * bodies - 2, lane]
+    z = S[state.VEHICLE + DOF_COUNT - 1, lane]
+    lateral += mass * (y - S[state.WHEELSET_FROM, lane])
+    vertical += mass * (z - S[state.WHEELSET_FROM + 1, lane])
     # the ground's acceleration has already moved on; its mean over the step does the work
     mean_y = S[state.GROUND, lane] - 0.5 * S[state.GROUND_SLOPE, lane]
     mean_z = S[state.GROUND_Z, lane] - 0.5 * S[state.GROUND_Z_SLOPE, lane]
@@ -206,12 +234,39 @@ def accelerate(S: Array, Q: Array, i: int, first: int, last: int, lane: int) -> 
 
 
 def damp(S: Array, Q: Array, lane: int) -> None:
-    """Stage: energy lost to the dashpots during this step."""
+    """Stage: energy lost to the dashpots during the step of structure and sprung bodies."""
     S[state.LOST_DASHPOTS, lane] += (
         0.5
+        * Q[constant.SUBSTEPS, lane]
         * Q[constant.DT, lane]
         * (S[state.DASHPOT_POWER_OLD, lane] + S[state.DASHPOT_POWER, lane])
     )
+
+
+def note_suspension(S: Array, Q: Array, lane: int) -> None:
+    """Stage: what `accelerate` has found for the wheelset, and how that has changed per step."""
+    bodies = DOF_COUNT // 3
+    acceleration = state.VEHICLE + 2 * DOF_COUNT
+    per_substep = Q[constant.DT, lane] * Q[constant.RATE, lane]
+    note_share(S, 0, S[acceleration + 2 * bodies - 2, lane], per_substep, lane)
+    note_share(S, 1, S[acceleration + 2 * bodies - 1, lane], per_substep, lane)
+    note_share(S, 2, S[acceleration + DOF_COUNT - 1, lane], per_substep, lane)
+
+
+def note_share(S: Array, k: int, now: float, per_substep: float, lane: int) -> None:
+    """`note_suspension` for one of y, phi, z."""
+    S[state.WHEELSET_FREE_SLOPE + k, lane] = per_substep * (
+        now - S[state.WHEELSET_FREE_KNOWN + k, lane]
+    )
+    S[state.WHEELSET_FREE_KNOWN + k, lane] = now
+    S[state.WHEELSET_FREE + k, lane] = now
+
+
+def carry_suspension_on(S: Array, lane: int) -> None:
+    """Stage between two evaluations of the suspension: the wheelset's share of it, carried on."""
+    S[state.WHEELSET_FREE, lane] += S[state.WHEELSET_FREE_SLOPE, lane]
+    S[state.WHEELSET_FREE + 1, lane] += S[state.WHEELSET_FREE_SLOPE + 1, lane]
+    S[state.WHEELSET_FREE + 2, lane] += S[state.WHEELSET_FREE_SLOPE + 2, lane]
 
 
 def push_wheelset(S: Array, Q: Array, lane: int) -> None:
@@ -226,9 +281,13 @@ def push_wheelset(S: Array, Q: Array, lane: int) -> None:
     force_y = S[state.WHEELSET_Y, lane]
     force_z = S[state.WHEELSET_Z, lane]
     force_phi = S[state.WHEELSET_PHI, lane]
-    S[acceleration + y, lane] += Q[inverse_mass + y, lane] * force_y
-    S[acceleration + z, lane] += Q[inverse_mass + z, lane] * force_z
-    S[acceleration + phi, lane] += Q[inverse_mass + phi, lane] * force_phi
+    S[acceleration + y, lane] = S[state.WHEELSET_FREE, lane] + Q[inverse_mass + y, lane] * force_y
+    S[acceleration + phi, lane] = (
+        S[state.WHEELSET_FREE + 1, lane] + Q[inverse_mass + phi, lane] * force_phi
+    )
+    S[acceleration + z, lane] = (
+        S[state.WHEELSET_FREE + 2, lane] + Q[inverse_mass + z, lane] * force_z
+    )
     S[state.WORK_VEHICLE, lane] += 0.5 * (
         (S[state.WHEELSET_OLD, lane] + force_y) * S[step + y, lane]
         + (S[state.WHEELSET_OLD + 1, lane] + force_z) * S[step + z, lane]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import railquake as rq
+from railquake.assembly import statics
 from railquake.assembly.system import GRAVITY
 from railquake.inputs.motion import GroundMotion
 from railquake.physics import constant, state
@@ -135,3 +136,11 @@ def test_shaken_ground_leaves_every_sprung_body_behind_alike(case):
     for name in response.system.vehicle.bodies[:-1]:
         moved = np.diff(response.channel(f"{name}_lateral_m"))
         assert moved == pytest.approx(-0.5 * 2.0 * 1e-3**2, rel=0.05)
+
+
+def test_rates_of_a_mass_on_spring_and_dashpot():
+    """Undamped the circular frequency; a dashpot alone c/m."""
+    mass = np.array([4.0])
+    spring, dashpot, nothing = np.array([[100.0]]), np.array([[12.0]]), np.zeros((1, 1))
+    assert statics.fastest_rate(mass, spring, nothing) == pytest.approx(5.0)
+    assert statics.fastest_rate(mass, nothing, dashpot) == pytest.approx(3.0)

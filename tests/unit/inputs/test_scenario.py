@@ -66,6 +66,7 @@ def test_solver_defaults():
         "time_step_tolerance": 0.01,
         "contact": "table",
         "hinge_solve": "newton",
+        "substeps": None,
         "phi": 0.5,
         "psi": 0.5,
         "history_step": 1e-3,

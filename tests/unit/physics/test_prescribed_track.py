@@ -34,28 +34,40 @@ def drive():
     return np.column_stack(columns)
 
 
-def test_position_velocity_and_step_at_every_step():
+@pytest.mark.parametrize("substeps", [1, 2])
+def test_position_velocity_and_work_at_every_step(substeps):
     s = np.zeros((state.VEHICLE + 45, 1))
     q = np.zeros((constant.VEHICLE, 1))
-    q[constant.FRAME_STEPS], q[constant.DT] = STEPS, DT
-    s[state.TRACK_Y : state.TRACK_Y + 3, 0] = polynomials(0.0)
+    q[constant.FRAME_STEPS], q[constant.DT], q[constant.SUBSTEPS] = STEPS, DT, substeps
+    q[constant.RATE] = 1.0 / (substeps * DT)
+    force = np.array([3.0, -5.0, 7.0])
+    s[state.TRACK_OLD : state.TRACK_OLD + 3, 0] = 0.5 * force
+    s[state.TRACK_FY : state.TRACK_FY + 3, 0] = 1.5 * force
     before = polynomials(0.0)
     for frame in range(3):
         march.begin_frame_on_track(s, q, drive(), frame, 0)
-        for n in range(STEPS):
+        for n in range(0, STEPS, substeps):
             march.move_ground(s, 0)
-            pier.hold_structure(s, q, 0)
-            pier.follow_track(s, q, 0)
-            t = DT * (frame * STEPS + n + 1)
-            now = polynomials(t)
-            assert s[state.TRACK_Y : state.TRACK_Y + 3, 0] == pytest.approx(now, abs=1e-12)
+            pier.place_prescribed_track(s, q, 0)
+            t = DT * (frame * STEPS + n)
+            assert s[state.TRACK_Y : state.TRACK_Y + 3, 0] == pytest.approx(before, abs=1e-12)
             assert s[state.TRACK_VY : state.TRACK_VY + 3, 0] == pytest.approx(slopes(t), abs=1e-9)
-            steps = s[state.TRACK_STEP_Y : state.TRACK_STEP_Y + 3, 0]
-            assert steps == pytest.approx(now - before, abs=1e-12)
+            pier.hold_structure(s, q, 0)
+            s[state.WORK_TRACK] = 0.0
+            pier.lead_prescribed_track(s, q, 0)
+            for _ in range(substeps):
+                pier.move_track(s, q, 0)
+            t = DT * (frame * STEPS + n + substeps)
+            now = polynomials(t)
+            # on the way at constant acceleration: the cubic's third part is 900 h^3/2
+            there = s[state.TRACK_Y : state.TRACK_Y + 3, 0]
+            assert there == pytest.approx(now, abs=500.0 * (substeps * DT) ** 3)
+            assert s[state.TRACK_VY : state.TRACK_VY + 3, 0] == pytest.approx(slopes(t), abs=1e-9)
+            assert s[state.WORK_TRACK, 0] == pytest.approx(force @ (now - before), abs=1e-12)
             before = now
             # what the bridge's measures show
-            assert s[state.U, 0] == s[state.TRACK_Y, 0]
-            assert s[state.U_V, 0] == s[state.TRACK_VY, 0]
+            assert s[state.U, 0] == pytest.approx(now[0], abs=1e-12)
+            assert s[state.U_V, 0] == pytest.approx(slopes(t)[0], abs=1e-9)
             assert s[state.U_A, 0] == pytest.approx(-60.0 + 5400.0 * t, abs=1e-6)
             assert s[state.THETA2, 0] == pytest.approx(-now[2], abs=1e-12)
             assert s[state.THETA2_V, 0] == pytest.approx(-slopes(t)[2], abs=1e-9)

@@ -67,6 +67,9 @@ def test_ground_and_gravity_work_on_the_steps_of_the_bodies(system):
         0.6,
     )
     s[state.DASHPOT_POWER] = 9.0
+    # the wheelset has come by its steps from where it set off
+    vehicle.note_place(s, 0)
+    s[state.VEHICLE + np.array([4, 8]), 0] += steps[[4, 8]]
     vehicle.carry(s, q, 0)
     mass = system.vehicle.mass[0::3]
     lateral, down = mass @ steps[0:6:2], mass @ steps[6:]
@@ -97,6 +100,7 @@ def test_accelerations_are_those_of_the_equations_of_motion(system):
     s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3, 0] = 5e3, 4e3, -1e3
     wheelset_steps = np.array([1e-3, -2e-3, 3e-3])
     s[state.VEHICLE + 36 + np.array([4, 8, 5]), 0] = wheelset_steps
+    vehicle.note_suspension(s, q, 0)
     vehicle.push_wheelset(s, q, 0)
     expected = -(matrices.stiffness @ x + matrices.damping @ v)
     expected[-3:] += 1e4, -2e4, 3e3
@@ -111,24 +115,94 @@ def test_accelerations_are_those_of_the_equations_of_motion(system):
     assert s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3, 0].tolist() == [1e4, -2e4, 3e3]
 
 
-def test_reaction_keeps_the_last_force_and_its_work_on_the_track(system):
+@pytest.mark.parametrize("substeps", [1, 5])
+def test_reaction_is_the_contact_force_one_time_step_before(system, substeps):
+    """Carried on linearly over the rest of the structure's step; the one before is kept."""
+    system = system.with_substeps(substeps)
     s, q = system.start.copy(), system.constants
+    s[[state.ARM_Y, state.ARM_Z], 0] = 0.02, -0.4
+    rows = slice(state.TRACK_FY, state.TRACK_FY + 3)
+    found = []
+    for share in (1.0, 1.5):
+        on_wheelset = share * np.array([1e4, -2e4, 3e3])
+        s[[state.WHEELSET_Y, state.WHEELSET_Z, state.WHEELSET_PHI], 0] = on_wheelset
+        march.react(s, q, 0)
+        found.append(s[rows, 0].copy())
+    contact = -np.array([1e4, -2e4, 3e3 + 0.02 * -2e4 + 0.4 * 1e4])
+    assert found[1] == pytest.approx((1.5 + 0.5 * (substeps - 1) / substeps) * contact)
+    assert s[state.TRACK_OLD : state.TRACK_OLD + 3, 0].tolist() == found[0].tolist()
+
+
+@pytest.mark.parametrize("substeps", [1, 5])
+def test_track_gets_to_where_the_structure_has_moved(system, substeps):
+    """At Newmark's own constant acceleration; its roll's sine and cosine go along."""
+    system = system.with_substeps(substeps)
+    s, q = system.start.copy(), system.constants
+    s[state.U_V : state.U_V + 3, 0] = 0.3, 0.2, 0.4
+    s[state.WORK_TRACK] = 0.0
     old, new = np.array([1.0, 2.0, 3.0]), np.array([40.0, 50.0, 60.0])
+    pier.place_track(s, q, 0)
+    pier.orient_track(s, 0)
+    begun = s[state.TRACK_Y : state.TRACK_Y + 3, 0].copy()
+    pier.move_structure(s, q, 0)
     s[state.TRACK_OLD : state.TRACK_OLD + 3, 0] = old
     s[state.TRACK_FY : state.TRACK_FY + 3, 0] = new
-    s[state.WORK_TRACK] = 0.0
-    steps = np.array([0.1, -0.2, 0.3])
-    s[state.TRACK_STEP_Y : state.TRACK_STEP_Y + 3, 0] = steps
-    march.react(s, q, 0)
-    assert s[state.WORK_TRACK, 0] == pytest.approx(0.5 * (old + new) @ steps)
-    assert s[state.TRACK_OLD : state.TRACK_OLD + 3, 0].tolist() == new.tolist()
+    pier.lead_track(s, q, 0)
+    for _ in range(substeps):
+        pier.move_track(s, q, 0)
+    wanted = np.array(pier.track_motion(s, q, 0))
+    assert s[state.TRACK_Y : state.TRACK_Y + 6, 0] == pytest.approx(wanted, rel=1e-10, abs=1e-16)
+    assert s[state.WORK_TRACK, 0] == pytest.approx(0.5 * (old + new) @ (wanted[:3] - begun))
+    roll = s[state.TRACK_PHI, 0]
+    assert s[state.TRACK_SIN, 0] == pytest.approx(np.sin(roll), rel=1e-14)
+    assert s[state.TRACK_COS, 0] == pytest.approx(np.cos(roll), rel=1e-14)
 
 
-def test_a_wheelset_placed_anew_has_nothing_added_up_yet(system):
+def test_suspension_is_carried_on_between_its_evaluations(system):
+    """Linearly, by what it has changed since the one before; evaluated, it is what it is."""
+    system = system.with_substeps(5)
+    s, q = system.start.copy(), system.constants
+    rows = state.VEHICLE + 18 + np.array([4, 5, 8])  # y, phi, z
+    free = slice(state.WHEELSET_FREE, state.WHEELSET_FREE + 3)
+    for value in (1.0, 3.0):
+        s[rows, 0] = value * np.array([1.0, -2.0, 4.0])
+        vehicle.note_suspension(s, q, 0)
+        assert s[free, 0] == pytest.approx(s[rows, 0])
+    for n in range(1, 5):
+        vehicle.carry_suspension_on(s, 0)
+        assert s[free, 0] == pytest.approx((3.0 + 0.4 * n) * np.array([1.0, -2.0, 4.0]))
+
+
+def test_wheels_of_a_section_act_together(system):
+    """Forces and powers of the patches of one axle, times the axles, in ground axes too."""
+    s, q = np.zeros_like(system.start), system.constants
+    axles = q[constant.AXLES, 0]
+    s[state.ON_TRACK] = 1.0
+    s[[state.TRACK_SIN, state.TRACK_COS], 0] = 0.6, 0.8
+    powers = [state.HERTZ_ENERGY, state.IMPACT_POWER, state.CREEP_POWER, state.SPIN_POWER]
+    s[powers, 0] = 1.0, 2.0, 3.0, 4.0
+    sides = [state.LOAD_LEFT, state.LOAD_RIGHT, state.LATERAL_LEFT, state.LATERAL_RIGHT]
+    s[sides, 0] = 10.0, 20.0, 5.0, -7.0
+    s[state.FORCE_PSI] = 9.0
+    march.add_up(s, q, 0)
+    assert s[powers, 0].tolist() == [1.0 * axles, 2.0 * axles, 3.0 * axles, 4.0 * axles]
+    assert s[sides, 0].tolist() == [10.0 * axles, 20.0 * axles, 5.0 * axles, -7.0 * axles]
+    forces = s[state.FORCE_Y : state.FORCE_PSI + 1, 0]
+    assert forces.tolist() == [2.0 * axles, -30.0 * axles, 9.0 * axles]  # on the wheelset
+    turned = s[state.WHEELSET_Y : state.WHEELSET_PHI + 1, 0]
+    assert turned == pytest.approx(
+        axles * np.array([0.8 * 2.0 + 0.6 * 30.0, 0.6 * 2.0 - 0.8 * 30.0, 9.0])
+    )
+    s[state.ON_TRACK] = 0.0
+    march.add_up(s, q, 0)
+    assert not s[[*powers, *sides, state.WHEELSET_Y, state.WHEELSET_Z, state.WHEELSET_PHI]].any()
+
+
+def test_what_the_patches_add_up_begins_at_nothing(system):
     s = system.start.copy()
-    sums = np.r_[state.FORCE_Y : state.SPIN_POWER + 1, state.LOAD_LEFT : state.LATERAL_RIGHT + 1]
+    sums = np.r_[state.FORCE_PSI : state.SPIN_POWER + 1, state.LOAD_LEFT : state.LATERAL_RIGHT + 1]
     s[sums] = 7.0
-    march.place_wheelset(s, system.constants, 0)
+    march.clear_forces(s, 0)
     assert not s[sums].any()
 
 

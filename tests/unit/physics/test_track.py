@@ -18,6 +18,7 @@ def constants():
     q = np.zeros((constant.VEHICLE, 1))
     q[[constant.MAP_U, constant.MAP_PHI, constant.REACTION]] = 1.0
     q[constant.MAP_H], q[constant.MAP_E] = H, E
+    q[[constant.DT, constant.RATE, constant.AXLES]] = 1.0
     q[constant.WHEELSET_HEIGHT] = 0.392
     return q
 
@@ -25,15 +26,18 @@ def constants():
 def moving(values):
     """Pier and wheelset somewhere, moving somehow, with a contact force in track axes."""
     s, q = np.zeros((state.VEHICLE + 5 * DOF_COUNT, 1)), constants()
+    s[state.ON_TRACK] = 1.0
     s[state.U, 0], s[state.THETA2, 0] = 0.05 * values[0], 0.05 * values[1]
     s[state.U_V, 0], s[state.THETA2_V, 0] = values[2], values[3]
     y, z = WHEELSET
     for k, row in enumerate((y, z, y + 1)):
         s[row, 0] = 0.1 * values[4 + k]
         s[row + DOF_COUNT, 0] = values[7 + k]
-    pier.move_track(s, q, 0)
+    pier.place_track(s, q, 0)
+    pier.orient_track(s, 0)
     march.place_wheelset(s, q, 0)
-    s[state.FORCE_Y : state.FORCE_PSI + 1, 0] = values[10:13]
+    s[[state.LATERAL_LEFT, state.LOAD_RIGHT, state.FORCE_PSI], 0] = values[10:13]
+    march.add_up(s, q, 0)
     march.react(s, q, 0)
     return s[:, 0]
 
@@ -42,7 +46,7 @@ def test_track_hangs_on_the_top_by_a_rigid_arm():
     """physics.md, section 1: phi = -theta_2, right side down."""
     s, q = np.zeros((state.VEHICLE, 1)), constants()
     s[state.U, 0], s[state.THETA2, 0] = 0.01, -0.002
-    pier.move_track(s, q, 0)
+    pier.place_track(s, q, 0)
     assert s[state.TRACK_PHI, 0] == 0.002
     assert s[state.TRACK_Y, 0] == pytest.approx(0.01 + H * 0.002)  # above the node: to the right
     assert s[state.TRACK_Z, 0] == pytest.approx(E * 0.002)  # right of the node: down
