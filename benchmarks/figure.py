@@ -14,6 +14,7 @@ BARS = (
     ("opensees_pier_steps_per_s", "OpenSees, the pier alone"),
     ("grid_steps_per_s", "one run, grid contact"),
     ("scalar_steps_per_s", "one run"),
+    ("lockstep_one_step_for_all_steps_per_s", "many abreast, all in every step"),
     ("lockstep_steps_per_s", "many abreast, one core"),
     ("lockstep_two_threads_steps_per_s", "many abreast, two threads"),
     ("gpu_steps_per_s", "many on a GPU"),
