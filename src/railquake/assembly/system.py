@@ -91,8 +91,8 @@ class System:
     critical_dt : float
         Longest stable time step at static load, s.
     slow_dt : float
-        Longest step, s, with which structure and sprung bodies may be marched by themselves; see
-        `march.step`.
+        Longest step, s, with which structure and sprung bodies may be marched by themselves, at
+        most `LONGEST_SLOW`; see `march.step`.
     static_wheel_load : float
         Vertical load of one side's wheels together, N.
     """
@@ -132,10 +132,9 @@ class System:
     def with_substeps(self, most: int) -> System:
         """The same with as many `substeps` as can be, up to ``most``; see `march.step`.
 
-        They divide a frame, take no longer than `LONGEST_SLOW` and leave slow what must be
-        (`slow_dt`).
+        They divide a frame and take no longer than `slow_dt`.
         """
-        longest = (1.0 + 1e-9) * min(LONGEST_SLOW, self.slow_dt) / self.dt
+        longest = (1.0 + 1e-9) * self.slow_dt / self.dt
         tried = range(min(most, max(1, int(longest))), 0, -1)
         constants = self.constants.copy()
         _fill_substeps(constants[:, 0], next(n for n in tried if self.frame_steps % n == 0))
@@ -678,7 +677,7 @@ def _slow_time_step(
 
     The structure itself is marched implicitly.
     """
-    rate = matrices.fastest_rate
+    rate = max(matrices.fastest_rate, SLOW / LONGEST_SLOW)
     if q[constant.REACTION] > 0.0:
         mass = q[[constant.M_U, constant.M_2]]
         top = track_map[:, [0, 2]]
