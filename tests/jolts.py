@@ -83,11 +83,8 @@ def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
     force -= matrices.stiffness @ s[x, 0] + matrices.damping @ s[v, 0]
     force[-3:] += s[state.WHEELSET_Y : state.WHEELSET_Y + 3, 0]
     s[a, 0] = s[a + 9, 0] = force / matrices.mass
-    # y, phi, z of the wheelset, but for its contact forces
-    free = s[a[[6, 8, 7]], 0]
-    free -= (
-        s[[state.WHEELSET_Y, state.WHEELSET_PHI, state.WHEELSET_Z], 0] / matrices.mass[[6, 8, 7]]
-    )
+    # the wheelset's, but for its contact forces
+    free = s[a[-3:], 0] - s[state.WHEELSET_Y : state.WHEELSET_Y + 3, 0] / matrices.mass[-3:]
     s[state.WHEELSET_FREE : state.WHEELSET_FREE + 3, 0] = free
     s[state.WHEELSET_FREE_KNOWN : state.WHEELSET_FREE_KNOWN + 3, 0] = free
     k = q[constant.K : constant.K + 6, 0]

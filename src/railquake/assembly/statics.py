@@ -253,8 +253,7 @@ def critical_time_step(
     n = len(mass)
     k = stiffness / mass[:, None]
     c = damping / mass[:, None]
-    motion = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -c]])
-    growth = max(0.0, float(np.linalg.eigvals(motion).real.max()))
+    growth = max(0.0, float(_eigenvalues(k, c).real.max()))
     eye = np.eye(n)
 
     def unstable(dt: float) -> bool:
@@ -283,11 +282,15 @@ def fastest_rate(mass: Array, stiffness: Array, damping: Array) -> float:
 
     Parameters are those of `critical_time_step`.
     """
-    n = len(mass)
-    motion = np.block(
-        [[np.zeros((n, n)), np.eye(n)], [-stiffness / mass[:, None], -damping / mass[:, None]]]
-    )
-    return float(np.abs(np.linalg.eigvals(motion)).max())
+    found = _eigenvalues(stiffness / mass[:, None], damping / mass[:, None])
+    return float(np.abs(found).max())
+
+
+def _eigenvalues(k: Array, c: Array) -> Array:
+    """Eigenvalues of x'' + c x' + k x = 0, 1/s."""
+    n = len(k)
+    found: Array = np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [-k, -c]]))
+    return found
 
 
 def contact_forces(

@@ -36,7 +36,7 @@ from railquake.physics import (
 from railquake.physics.contact import calibrated_hysteresis, printed_hysteresis
 from railquake.physics.kernel import CUDA, PYTHON, SCALAR, Kernel, Target, bind
 from railquake.physics.profiles import Geometry, axis_constants
-from railquake.physics.vehicle import kernel_order
+from railquake.physics.vehicle import kernel_order, unpacked, upper_triangle
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -417,7 +417,7 @@ def _drive(scenario: Scenario, ground: GroundMotion, frame: float) -> Array:
 
 def _fill_vehicle(q: Array, scenario: Scenario, matrices: VehicleMatrices) -> None:
     order = kernel_order(len(matrices.mass))
-    upper = np.triu_indices(len(order))
+    upper = upper_triangle(len(order))
     rows = (
         matrices.mass[0::3],
         1.0 / matrices.mass[order],
@@ -510,7 +510,7 @@ def _fill_support(
     if support.p_delta:
         weight = (support.mass + (train_mass if support.coupled else 0.0)) * GRAVITY
         column = column + pier.geometric_stiffness(weight, support.length)
-    upper = np.triu_indices(3)
+    upper = upper_triangle(3)
     q[constant.PIER_LOAD] = support.mass
     q[constant.M_U : constant.M_U + 3] = mass
     q[constant.K : constant.K + 6] = column[upper]
@@ -529,21 +529,15 @@ def _fill_support(
 def _fill_substeps(q: Array, substeps: int) -> None:
     """Time steps in one of structure and sprung bodies, and what of the structure depends on it."""
     step = substeps * float(q[constant.DT])
-
-    def symmetric(first: int) -> Array:
-        matrix = np.zeros((3, 3))
-        matrix[np.triu_indices(3)] = q[first : first + 6]
-        return np.asarray(matrix + np.triu(matrix, 1).T)
-
     effective = newmark.effective_matrix(
         np.diag(q[constant.M_U : constant.M_U + 3]),
-        symmetric(constant.C),
-        symmetric(constant.K),
+        unpacked(q[constant.C : constant.C + 6]),
+        unpacked(q[constant.K : constant.K + 6]),
         step,
     )
     q[constant.SUBSTEPS] = substeps
     q[constant.RATE] = 1.0 / step
-    q[constant.FLEX : constant.FLEX + 6] = np.linalg.inv(effective)[np.triu_indices(3)]
+    q[constant.FLEX : constant.FLEX + 6] = np.linalg.inv(effective)[upper_triangle(3)]
 
 
 def hinge_parameters(hinge: BoucWenHinge, tolerance: float, iterations: int) -> tuple[float, ...]:
@@ -622,12 +616,9 @@ def _settle_forces(
     for old, new in ((state.TRACK_OLD, state.TRACK_FY), (state.WHEELSET_OLD, state.WHEELSET_Y)):
         S[old : old + 3] = S[new : new + 3]
     # at rest the suspension bears what the contact pushes
-    dofs, bodies = len(matrices.mass), len(matrices.mass) // 3
-    free = slice(state.WHEELSET_FREE, state.WHEELSET_FREE + 3)
-    forces = [state.WHEELSET_Y, state.WHEELSET_PHI, state.WHEELSET_Z]
-    masses = constant.VEHICLE + bodies + np.array([2 * bodies - 2, 2 * bodies - 1, dofs - 1])
-    S[free] = -Q[masses] * S[forces]
-    S[state.WHEELSET_FREE_KNOWN : state.WHEELSET_FREE_KNOWN + 3] = S[free]
+    free = -S[state.WHEELSET_Y : state.WHEELSET_Y + 3] / matrices.mass[-3:, None]
+    S[state.WHEELSET_FREE : state.WHEELSET_FREE + 3] = free
+    S[state.WHEELSET_FREE_KNOWN : state.WHEELSET_FREE_KNOWN + 3] = free
     powers = slice(state.IMPACT_POWER, state.IMPACT_POWER + 3)
     S[state.IMPACT_POWER_OLD : state.IMPACT_POWER_OLD + 3] = S[powers]
     # low-pass filters start from the steady state

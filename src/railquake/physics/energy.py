@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from railquake.physics import constant, state
+from railquake.physics.vehicle import unpacked
 
 __all__ = ["EnergyAudit", "audit"]
 
@@ -96,19 +97,11 @@ def audit(start: Array, end: Array, constants: Array) -> EnergyAudit:
     first, last, q = start[:, 0], end[:, 0], constants[:, 0]
     dofs = (len(first) - state.VEHICLE) // state.VEHICLE_BLOCKS
     pier_mass = q[constant.M_U : constant.M_U + 3]
-    upper = q[constant.K : constant.K + 6]
-    column = np.array(
-        [
-            [upper[0], upper[1], upper[2]],
-            [upper[1], upper[3], upper[4]],
-            [upper[2], upper[4], upper[5]],
-        ]
-    )
+    column = unpacked(q[constant.K : constant.K + 6])
     block = constant.VEHICLE + dofs // 3
     inverse_mass = q[block : block + dofs]
-    i, j = np.triu_indices(dofs)  # in the order of `vehicle.packed`
-    suspension = np.empty((dofs, dofs))
-    suspension[i, j] = suspension[j, i] = q[block + dofs : block + dofs + len(i)]
+    entries = dofs * (dofs + 1) // 2
+    suspension = unpacked(q[block + dofs : block + dofs + entries])
 
     def stored(s: Array) -> tuple[float, float]:
         x, v = s[state.U : state.U + 3], s[state.U_V : state.U_V + 3]

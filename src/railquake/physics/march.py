@@ -364,6 +364,13 @@ def skip_fetch(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
     """Stage in the place of `fetch` where no table is used."""
 
 
+def closing_rate(
+    slope: float, gap_psi: float, shift_v: float, height_v: float, roll_v: float
+) -> float:
+    """Rate of the penetration Z - G(Y, psi), vertical, m/s; arguments as in `patch_forces`."""
+    return height_v - slope * shift_v - gap_psi * roll_v
+
+
 def patch_forces(
     penetration: float,
     slope: float,
@@ -415,7 +422,7 @@ def patch_forces(
     """
     cos_gamma = 1.0 / math.sqrt(1.0 + slope * slope)
     delta = max(penetration, 0.0) * cos_gamma
-    rate = (height_v - slope * shift_v - gap_psi * roll_v) * cos_gamma
+    rate = closing_rate(slope, gap_psi, shift_v, height_v, roll_v) * cos_gamma
     hysteresis = onset_hysteresis(penetration > 0.0, hysteresis, rate, alpha_r, onset_bound)
     normal, elastic = normal_force(delta, rate, stiffness, hysteresis)
     # the contact point's arm follows from dG/dpsi = -(arm_y + tan(gamma) arm_z)
@@ -460,32 +467,27 @@ def may_be_near(S: Array, side: int, lanes: int) -> bool:
     return True
 
 
-def look_again(S: Array, Q: Array, lane: int) -> None:
+def look_again(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
     """Stage, now and then where many run abreast: how near the flanges are to their rails."""
-    look_at_flange(S, Q, 0, lane)
-    look_at_flange(S, Q, 1, lane)
+    look_at_flange(S, Q, geometry, 0, lane)
+    look_at_flange(S, Q, geometry, 1, lane)
 
 
-def look_at_flange(S: Array, Q: Array, side: int, lane: int) -> None:
+def look_at_flange(S: Array, Q: Array, geometry: Geometry, side: int, lane: int) -> None:
     """`look_again` for one side.
 
     A flange that would not reach its rail within `LOOK` (and a time step) if it went on as it does,
     with `SPARE` left for what it is hurried, bears nothing until it is looked at again.
     """
     sign = 2.0 * side - 1.0
-    cell = state.CELL + side * state.CELL_ROWS
-    gap, slope, gap_psi = gap_in_cell(
-        S,
-        state.POLYNOMIAL + (2 * side + 1) * state.POLYNOMIAL_ROWS,
-        S[cell + state.CELL_SHIFT, lane],
-        S[cell + state.CELL_ROLL, lane],
-        lane,
-    )
+    gap, slope, gap_psi, _, _, _, _ = patch_at(S, Q, geometry, side, 1, lane)
     penetration = S[state.HEIGHT, lane] - gap
-    closing = (
-        S[state.HEIGHT_V, lane]
-        - slope * S[cell + state.CELL_SHIFT_RATE, lane] * sign * S[state.SHIFT_V, lane]
-        - gap_psi * S[cell + state.CELL_ROLL_RATE, lane] * sign * S[state.ROLL_V, lane]
+    closing = closing_rate(
+        slope,
+        gap_psi,
+        sign * S[state.SHIFT_V, lane],
+        S[state.HEIGHT_V, lane],
+        sign * S[state.ROLL_V, lane],
     )
     horizon = LOOK + Q[constant.DT, lane]
     reaches = penetration + max(closing, 0.0) * horizon + SPARE > 0.0
@@ -961,7 +963,7 @@ def march_abreast(
                 for lane in range(lanes):
                     refresh_hinge(S, Q, lane)
                 for lane in range(lanes):
-                    look_again(S, Q, lane)
+                    look_again(S, Q, geometry, lane)
             step(S, Q, geometry, lanes, substeps)
         frame += 1
         for lane in range(lanes):
@@ -1039,7 +1041,7 @@ def march_on_device(
             for n in range(steps // substeps):
                 if n % refresh == 0:
                     refresh_hinge(S, Q, 0)
-                    look_again(S, Q, 0)
+                    look_again(S, Q, geometry, 0)
                 step(S, Q, geometry, LANES, substeps)
             frame += 1
             S[state.TIME, 0] = frame * steps * Q[constant.DT, 0]

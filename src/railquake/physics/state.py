@@ -69,7 +69,7 @@ TRACK_OLD = PATCHES_END + 23
 TRACK_CONTACT = PATCHES_END + 26
 (NODE_U, NODE_THETA2) = range(PATCHES_END + 29, PATCHES_END + 31)
 FORCES_END = PATCHES_END + 31
-# acceleration of the wheelset (y, phi, z) but for the contact: from suspension, ground and gravity;
+# acceleration of the wheelset (y, z, phi) but for the contact: from suspension, ground and gravity;
 # as last evaluated; its change per step
 WHEELSET_FREE = FORCES_END
 WHEELSET_FREE_KNOWN = FORCES_END + 3

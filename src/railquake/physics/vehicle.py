@@ -11,6 +11,7 @@ freedom in the order of `kernel_order`.
 """
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,8 @@ __all__ = [
     "predict_sprung",
     "predict_wheelset",
     "push_wheelset",
+    "unpacked",
+    "upper_triangle",
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -138,6 +141,21 @@ def packed(i: int, j: int, n: int) -> int:
     """Place of entry (i, j) of a symmetric n x n matrix kept as the rows of its upper triangle."""
     low = min(i, j)
     return ((low * (2 * n - low - 1)) >> 1) + max(i, j)
+
+
+def unpacked(entries: Array) -> Array:
+    """Symmetric matrix from the rows of its upper triangle; see `packed`."""
+    n = round((2 * len(entries)) ** 0.5 - 0.5)
+    matrix = np.empty((n, n))
+    i, j = upper_triangle(n)
+    matrix[i, j] = matrix[j, i] = entries
+    return matrix
+
+
+@cache
+def upper_triangle(n: int) -> tuple[Any, Any]:
+    """Rows and columns of the entries of a `packed` matrix."""
+    return np.triu_indices(n)
 
 
 def note_place(S: Array, lane: int) -> None:
@@ -249,12 +267,12 @@ def note_suspension(S: Array, Q: Array, lane: int) -> None:
     acceleration = state.VEHICLE + 2 * DOF_COUNT
     per_substep = Q[constant.DT, lane] * Q[constant.RATE, lane]
     note_share(S, 0, S[acceleration + 2 * bodies - 2, lane], per_substep, lane)
-    note_share(S, 1, S[acceleration + 2 * bodies - 1, lane], per_substep, lane)
-    note_share(S, 2, S[acceleration + DOF_COUNT - 1, lane], per_substep, lane)
+    note_share(S, 1, S[acceleration + DOF_COUNT - 1, lane], per_substep, lane)
+    note_share(S, 2, S[acceleration + 2 * bodies - 1, lane], per_substep, lane)
 
 
 def note_share(S: Array, k: int, now: float, per_substep: float, lane: int) -> None:
-    """`note_suspension` for one of y, phi, z."""
+    """`note_suspension` for one of y, z, phi."""
     S[state.WHEELSET_FREE_SLOPE + k, lane] = per_substep * (
         now - S[state.WHEELSET_FREE_KNOWN + k, lane]
     )
@@ -282,11 +300,11 @@ def push_wheelset(S: Array, Q: Array, lane: int) -> None:
     force_z = S[state.WHEELSET_Z, lane]
     force_phi = S[state.WHEELSET_PHI, lane]
     S[acceleration + y, lane] = S[state.WHEELSET_FREE, lane] + Q[inverse_mass + y, lane] * force_y
-    S[acceleration + phi, lane] = (
-        S[state.WHEELSET_FREE + 1, lane] + Q[inverse_mass + phi, lane] * force_phi
-    )
     S[acceleration + z, lane] = (
-        S[state.WHEELSET_FREE + 2, lane] + Q[inverse_mass + z, lane] * force_z
+        S[state.WHEELSET_FREE + 1, lane] + Q[inverse_mass + z, lane] * force_z
+    )
+    S[acceleration + phi, lane] = (
+        S[state.WHEELSET_FREE + 2, lane] + Q[inverse_mass + phi, lane] * force_phi
     )
     S[state.WORK_VEHICLE, lane] += 0.5 * (
         (S[state.WHEELSET_OLD, lane] + force_y) * S[step + y, lane]

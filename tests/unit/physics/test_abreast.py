@@ -178,7 +178,7 @@ def flanges_near(system, shift, speed=0.0, on=1.0):
     s[state.VEHICLE + 9 + 4] = speed
     s[state.ON_TRACK] = on
     march.find_contact_forces(s, q, system.geometry)
-    march.look_again(s, q, 0)
+    march.look_again(s, q, system.geometry, 0)
     return s[state.NEAR : state.NEAR + 2, 0].tolist()
 
 

@@ -162,7 +162,7 @@ def test_suspension_is_carried_on_between_its_evaluations(system):
     """Linearly, by what it has changed since the one before; evaluated, it is what it is."""
     system = system.with_substeps(5)
     s, q = system.start.copy(), system.constants
-    rows = state.VEHICLE + 18 + np.array([4, 5, 8])  # y, phi, z
+    rows = state.VEHICLE + 18 + np.array([4, 8, 5])  # y, z, phi
     free = slice(state.WHEELSET_FREE, state.WHEELSET_FREE + 3)
     for value in (1.0, 3.0):
         s[rows, 0] = value * np.array([1.0, -2.0, 4.0])
