@@ -1,12 +1,18 @@
 """Many runs in lockstep: each gives its own row, whatever runs beside it."""
 
+import os
+import platform
+import re
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 import railquake as rq
 from railquake import lockstep
 from railquake.assembly.system import System
-from railquake.physics.kernel import lockstep_target, wide_register
+from railquake.physics.kernel import lockstep_target, vector_doubles, vector_instructions
 
 SHORT = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
 TIMINGS = ("wall_s", "steps_per_s", "versions")
@@ -164,9 +170,8 @@ def test_an_error_in_the_callers_scenarios_reaches_the_caller():
 
 def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
     """The speed rests on it, and a stray branch in a stage silently loses it."""
-    register = wide_register()
-    if register is None:
-        pytest.skip("no wide vectors on this machine")
+    doubles = vector_doubles()
+    assert doubles > 1
     from railquake.physics import kernel
 
     monkeypatch.setenv("RAILQUAKE_CACHE_DIR", str(tmp_path))  # compile here and now
@@ -184,19 +189,39 @@ def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
         code = next(iter(made.inspect_asm().values()))
     finally:
         kernel._bind_cached.cache_clear()
-    instructions = [line.split("\t") for line in code.splitlines() if line.startswith("\t")]
-    packed = sum(
-        "pd" in parts[1] and f"%{register}" in parts[2] for parts in instructions if len(parts) > 2
-    )
-    assert packed > 1500
-    if register == "ymm":
+    # two vectors of two doubles do what one of four does
+    assert vector_instructions(code, doubles) > 1500
+    if doubles == 4:
         # a store of single lanes is slow: a frame may have some, the peaks of every step none
-        single = sum(
-            parts[1] == "vmaskmovpd" and parts[2].rstrip().endswith(")")
-            for parts in instructions
-            if len(parts) > 2
-        )
-        assert single < 13
+        single = re.findall(r"^\tvmaskmovpd\t.*\)\s*$", code, re.MULTILINE)
+        assert len(single) < 13
+
+
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="names of x86 processors")
+@pytest.mark.parametrize(
+    ("processor", "doubles"),
+    [
+        ("generic", 2),
+        ("x86-64-v3", 4),
+        ("skylake-avx512", 4),  # AVX-512, but LLVM prefers 256 bits
+        ("icelake-server", 4),
+        ("znver3", 4),
+        ("znver4", 8),
+    ],
+)
+def test_lanes_are_as_many_as_the_compilers_own_vectors_hold(processor, doubles):
+    program = (
+        "from railquake.physics.kernel import lockstep_target, vector_doubles;"
+        "print(vector_doubles(), lockstep_target().lanes)"
+    )
+    named = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""}
+    found = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, **named},
+        capture_output=True,
+        check=True,
+    )
+    assert found.stdout.split() == [b"%d" % doubles, b"%d" % max(doubles, 4)]
 
 
 def test_one_by_one_is_the_single_engine():

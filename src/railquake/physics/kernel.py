@@ -12,6 +12,7 @@ import hashlib
 import importlib
 import importlib.util
 import os
+import re
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -36,7 +37,8 @@ __all__ = [
     "missing_for_cuda",
     "ptx",
     "source_hash",
-    "wide_register",
+    "vector_doubles",
+    "vector_instructions",
 ]
 
 Law = Callable[..., Any]
@@ -74,22 +76,67 @@ THREADS = 32  # of a block: one warp, so that few scenarios reach all multiproce
 
 @cache
 def lockstep_target() -> Target:
-    """Target that runs scenarios abreast: one to each double of the machine's widest vectors.
+    """Target that runs scenarios abreast: one to each double of the vectors that the compiler uses.
 
-    Two such vectors to a stage are no faster: their state leaves the first-level cache.
+    Two such vectors to a stage are no faster: their state leaves the first-level cache.  But where
+    vectors hold two doubles only, two of them are.
     """
-    return Target("lockstep", compiled=True, lanes=8 if wide_register() == "zmm" else 4)
+    return Target("lockstep", compiled=True, lanes=max(vector_doubles(), 4))
 
 
 @cache
-def wide_register() -> str | None:
-    """Register of the machine's widest vectors, as assembly calls it; None if they are narrow."""
-    import llvmlite.binding
+def vector_doubles() -> int:
+    """Doubles in the vectors that the compiler uses on this machine.
 
-    features = llvmlite.binding.get_host_cpu_features()
-    if features.get("avx512f"):
-        return "zmm"
-    return "ymm" if features.get("avx2") else None
+    They may be fewer than the machine has room for: LLVM keeps to 256 bits on many processors with
+    AVX-512, where wider vectors slow the clock.  So it is asked, by a loop that it vectorises.
+    """
+    code = _loop_in_assembly()
+    return next((doubles for doubles in (8, 4, 2) if vector_instructions(code, doubles)), 1)
+
+
+def vector_instructions(code: str, doubles: int) -> int:
+    """Instructions in assembly (x86-64 or arm64) on vectors of so many doubles."""
+    return len(re.findall(VECTORS[doubles], code, re.MULTILINE))
+
+
+VECTORS = {
+    8: r"^\s+v\w+pd\b.*%zmm\d",
+    4: r"^\s+v\w+pd\b.*%ymm\d",
+    2: r"^\s+v?\w+pd\b.*%xmm\d|^\s.*\.2d\b|^\s.*\bz\d+\.d\b",  # SSE, NEON, SVE
+}
+
+_LOOP = """
+define void @thrice(double* noalias %x, i64 %n) {
+entry:
+  %some = icmp sgt i64 %n, 0
+  br i1 %some, label %loop, label %exit
+loop:
+  %i = phi i64 [0, %entry], [%next, %loop]
+  %place = getelementptr double, double* %x, i64 %i
+  %value = load double, double* %place
+  %product = fmul double %value, 3.0
+  store double %product, double* %place
+  %next = add nsw i64 %i, 1
+  %more = icmp slt i64 %next, %n
+  br i1 %more, label %loop, label %exit
+exit:
+  ret void
+}
+"""
+
+
+def _loop_in_assembly() -> str:
+    """A loop over an array of doubles as the compiler translates it for its processor."""
+    import llvmlite.binding
+    from numba.core.compiler_lock import global_compiler_lock
+    from numba.core.registry import cpu_target
+
+    with global_compiler_lock:
+        library = cpu_target.target_context.codegen().create_library("width")
+        library.add_llvm_module(llvmlite.binding.parse_assembly(_LOOP))
+        library.finalize()
+        return str(library.get_asm_str())
 
 
 @dataclass(frozen=True)
