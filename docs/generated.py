@@ -4,8 +4,8 @@ import typing
 
 from pydantic_core import PydanticUndefined
 
-from railquake.inputs import hinge, shaking, solver, support, vehicle, wheelrail
-from railquake.inputs.motion import SyntheticParameters
+from railquake.inputs import hinge, motion, solver, support, vehicle, wheelrail
+from railquake.inputs.ground_motion import SyntheticParameters
 from railquake.inputs.presets import list_presets
 from railquake.inputs.schema import json_schema as schema
 from railquake.inputs.units import DIMENSIONS, UNIT_DEFINITIONS, Quantity
@@ -39,7 +39,7 @@ SECTIONS = (
         "`polynomial`), `start`, `end`, and for an arc `centre`, `radius` and `concave`; for a "
         "polynomial `coefficients`, `y_start`, `y_end`. Print the preset `bart` for an example.",
     ),
-    ("[motion]", shaking.Motion, "One of `record`, `synthetic` and `acceleration`."),
+    ("[motion]", motion.Motion, "One of `record`, `synthetic` and `acceleration`."),
     ("[solver]", solver.Solver, ""),
 )
 # These may build on a preset; these are named by their table.
@@ -129,7 +129,7 @@ def case_file():
         lines += [table(("key", "what to write", "default", "meaning"), fields(model))]
     lines += ["## motion.synthetic", "", "A motion from a documented stochastic model,"]
     lines += [
-        "{py:mod}`railquake.inputs.motion.synthetic`, where the parameters are explained.",
+        "{py:mod}`railquake.inputs.ground_motion.synthetic`, where the parameters are explained.",
         "",
     ]
     rows = []
@@ -176,7 +176,7 @@ def presets():
 
 def channels():
     """Every channel of a history."""
-    from railquake.response import channels as known
+    from railquake.run.response import channels as known
 
     rows = [
         (f"`{name}`", unit, text) for name, _, unit, text in known(("car", "bogie", "wheelset"))

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 import railquake as rq
-from railquake import device, lockstep
-from railquake.assessment import assess
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
+from railquake.run import gpu, many
+from railquake.run.assess import assess
 
 DT = 0.005
 
@@ -49,14 +49,14 @@ def batch():
 
 
 def rows(where):
-    found = dict(lockstep.simulate_many(batch(), threads=1, device=where))
+    found = dict(many.simulate_many(batch(), threads=1, device=where))
     return [found[index] for index in range(len(found))]
 
 
 def shared_motions():
     """Three systems with two motions; rows that were sent, and after many others came and went."""
     systems = [rq.assemble(case("elastic", 15.0, 0.1, scale=scale)) for scale in (1.0, 1.0, 0.5)]
-    lanes = device.DeviceLanes(systems[0], 10)
+    lanes = gpu.DeviceLanes(systems[0], 10)
     loaded = [lanes.load(lane, system) for lane, system in enumerate(systems)]
     first = lanes.motions.end
     for k in range(40):
@@ -97,13 +97,13 @@ def studies():
 
 if __name__ == "__main__":
     # the rows leave this loss out
-    lockstep.assess = lambda response: {**assess(response), "impact_j": response.audit.impact}
+    many.assess = lambda response: {**assess(response), "impact_j": response.audit.impact}
     # lanes are few, so that they are given the next scenario; chunks are short
-    device.DeviceLanes.most = 2
-    device.FIRST_LANES = 1
-    device.CHUNK = 50
+    gpu.DeviceLanes.most = 2
+    gpu.FIRST_LANES = 1
+    gpu.CHUNK = 50
     answer = {"cpu": rows("cpu"), "cuda": rows("cuda")}
-    device.DeviceLanes.most = 3
+    gpu.DeviceLanes.most = 3
     answer["motions"] = shared_motions()
     answer["studies"] = studies()
     json.dump(answer, sys.stdout)

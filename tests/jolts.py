@@ -14,7 +14,7 @@ import numpy as np
 
 import railquake as rq
 from railquake.assembly.system import GRAVITY
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.physics import constant, march, state
 from railquake.physics.vehicle import kernel_order
 

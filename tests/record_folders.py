@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from railquake.inputs.motion import STANDARD_GRAVITY, GroundMotion, synthetic_motion
+from railquake.inputs.ground_motion import STANDARD_GRAVITY, GroundMotion, synthetic_motion
 
 SHORT: dict[str, Any] = {
     "duration": 8.0, "dt": 0.01, "pga": 0.3 * STANDARD_GRAVITY, "highpass_frequency": 0.3,

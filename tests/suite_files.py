@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from railquake.inputs.motion import GroundMotion, read_motion
+from railquake.inputs.ground_motion import GroundMotion, read_motion
 
 # The manifest's order; named here so that the tests' names do not need the files.
 RECORDS = (

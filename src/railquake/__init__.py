@@ -13,36 +13,36 @@ from railquake.version import __version__
 
 if TYPE_CHECKING:
     from railquake.assembly import assemble as assemble
-    from railquake.assessment import assess as assess
     from railquake.errors import InputError as InputError
     from railquake.fragility import Fragility as Fragility
-    from railquake.inputs.motion import GroundMotion as GroundMotion
-    from railquake.inputs.motion import read_motion as read_motion
+    from railquake.inputs.ground_motion import GroundMotion as GroundMotion
+    from railquake.inputs.ground_motion import read_motion as read_motion
     from railquake.inputs.scenario import Scenario as Scenario
     from railquake.inputs.scenario import load_scenario as load_scenario
     from railquake.inputs.scenario import scenario as scenario
-    from railquake.lockstep import simulate_many as simulate_many
-    from railquake.response import Response as Response
-    from railquake.simulation import simulate as simulate
+    from railquake.run.assess import assess as assess
+    from railquake.run.many import simulate_many as simulate_many
+    from railquake.run.response import Response as Response
+    from railquake.run.simulate import simulate as simulate
     from railquake.study import Study as Study
     from railquake.study import load_study as load_study
 
 # Loaded when first asked for: `import railquake` stays quick.
 _HOMES = {
     "Fragility": "railquake.fragility",
-    "GroundMotion": "railquake.inputs.motion",
+    "GroundMotion": "railquake.inputs.ground_motion",
     "InputError": "railquake.errors",
-    "Response": "railquake.response",
+    "Response": "railquake.run.response",
     "Scenario": "railquake.inputs.scenario",
     "Study": "railquake.study",
     "assemble": "railquake.assembly",
-    "assess": "railquake.assessment",
+    "assess": "railquake.run.assess",
     "load_scenario": "railquake.inputs.scenario",
     "load_study": "railquake.study",
-    "read_motion": "railquake.inputs.motion",
+    "read_motion": "railquake.inputs.ground_motion",
     "scenario": "railquake.inputs.scenario",
-    "simulate": "railquake.simulation",
-    "simulate_many": "railquake.lockstep",
+    "simulate": "railquake.run.simulate",
+    "simulate_many": "railquake.run.many",
 }
 
 __all__ = ["__version__", *_HOMES]

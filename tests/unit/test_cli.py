@@ -314,12 +314,13 @@ def test_stopped_run_leaves_nothing_behind(tmp_path, number, after):
 
 
 def test_run_that_diverged_says_so_loudly(case, tmp_path, capsys, monkeypatch):
-    from railquake import assessment, output
+    from railquake.report import run_folder
+    from railquake.run.assess import assess as real
 
     def assess(response):
-        return assessment.assess(response) | {"status": "diverged", "pbd_m": float("nan")}
+        return real(response) | {"status": "diverged", "pbd_m": float("nan")}
 
-    monkeypatch.setattr(output, "assess", assess)
+    monkeypatch.setattr(run_folder, "assess", assess)
     out = tmp_path / "out"
     at_grade = ["--set", "support.kind=at-grade"]
     assert main(["run", str(case), "--out", str(out), *at_grade]) == 0

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import railquake as rq
-from railquake import bench_gpu
+from railquake.bench import gpu as bench_gpu
 from railquake.cli.application import app
-from railquake.lockstep import simulate_many
 from railquake.physics import kernel
+from railquake.run.many import simulate_many
 
 TIMINGS = ("wall_s", "steps_per_s")
 RELATIVE_ALREADY = ("energy_residual", "contact_energy_residual")

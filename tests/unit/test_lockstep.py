@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import railquake as rq
-from railquake import lockstep
 from railquake.assembly.system import System
 from railquake.physics.kernel import lockstep_target, vector_doubles, vector_instructions
 
@@ -95,7 +94,7 @@ def test_an_impossible_scenario_is_a_row_and_the_others_finish():
 
 @pytest.mark.parametrize("stage", ["assemble", "assess"])
 def test_an_unforeseen_fault_is_a_row_and_the_others_finish(monkeypatch, stage):
-    real = getattr(lockstep, stage)
+    real = getattr(many, stage)
     met = []
 
     def faulty(given):
@@ -104,7 +103,7 @@ def test_an_unforeseen_fault_is_a_row_and_the_others_finish(monkeypatch, stage):
             raise ZeroDivisionError("nobody\nforesaw this")
         return real(given)
 
-    monkeypatch.setattr(lockstep, stage, faulty)
+    monkeypatch.setattr(many, stage, faulty)
     rows = dict(rq.simulate_many(mixed()[:3], threads=1))
     status = [row["status"] for row in rows.values()]
     assert sorted(status) == ["failed", "safe", "safe"]

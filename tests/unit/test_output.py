@@ -7,9 +7,10 @@ import signal
 import pytest
 
 import railquake as rq
-from railquake import output, plots
-from railquake.folders import prepare_folder
-from railquake.output import json_text, write_run
+from railquake import plots
+from railquake.files import prepare_folder
+from railquake.report import run_folder
+from railquake.report.run_folder import json_text, write_run
 
 MOTION = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
 NUMBERS = {"summary.json", "history.nc", "events.csv", "case.toml"}
@@ -77,13 +78,13 @@ def test_interruption_waits_while_files_are_moved(response, tmp_path, monkeypatc
     def stop(*_):
         raise KeyboardInterrupt
 
-    move = output._move
+    move = run_folder._move
 
     def interrupted(part, folder):
         os.kill(os.getpid(), number)
         move(part, folder)
 
-    monkeypatch.setattr(output, "_move", interrupted)
+    monkeypatch.setattr(run_folder, "_move", interrupted)
     former = signal.signal(number, stop)
     try:
         with pytest.raises(KeyboardInterrupt):

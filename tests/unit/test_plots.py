@@ -12,7 +12,7 @@ from matplotlib.image import imread
 
 import railquake as rq
 from railquake import plots
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.inputs.vehicle import Vehicle
 from railquake.physics.profiles import zone_extremum
 from railquake.plots import section

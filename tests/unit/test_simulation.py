@@ -5,7 +5,7 @@ import pytest
 
 import railquake as rq
 from railquake.assembly.system import low_pass_coefficients
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.physics import state
 from railquake.physics.kernel import PYTHON
 

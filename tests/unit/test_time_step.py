@@ -6,8 +6,8 @@ import pytest
 
 import railquake as rq
 from railquake.assembly import critical_time_step
-from railquake.lockstep import choose_time_step
-from railquake.time_step import LONGEST, SAFE_SHARE, search_time_step
+from railquake.run.many import choose_time_step
+from railquake.run.time_step import LONGEST, SAFE_SHARE, search_time_step
 
 SHORT = {"seed": 3, "duration": "1 s", "dt": "0.01 s", "pga": "0.6 g", "highpass_frequency": "1 Hz"}
 

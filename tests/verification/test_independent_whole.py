@@ -8,7 +8,7 @@ import railquake as rq
 from independent_model import solve
 from jolts import JOLTS, STORED, jolt, measured, push
 from kalker import kalker_table
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 
 DURATION = 0.9
 STEPS = (4e-5, 2e-5, 1e-5)

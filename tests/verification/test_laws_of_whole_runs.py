@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import railquake as rq
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.physics import march, state
 from railquake.physics.vehicle import kernel_order
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import railquake as rq
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.physics.kernel import PYTHON
-from railquake.response import channels
+from railquake.run.response import channels
 
 # 35 ms of a jolt that the wheels cannot follow
 JOLT = GroundMotion("jolt", 5e-3, 28.0 * np.array([0.3, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0]))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import railquake as rq
-from railquake.inputs._toml import dumps
+from railquake.inputs.toml import dumps
 from railquake.study import open_results
 from study_files import many, untimed
 

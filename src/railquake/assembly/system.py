@@ -41,8 +41,8 @@ from railquake.physics.vehicle import kernel_order, unpacked, upper_triangle
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from railquake.inputs.ground_motion import GroundMotion
     from railquake.inputs.hinge import BoucWenHinge
-    from railquake.inputs.motion import GroundMotion
     from railquake.inputs.scenario import Scenario
     from railquake.inputs.solver import Solver
 

@@ -10,11 +10,11 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from railquake.errors import InputError
-from railquake.inputs._model import InputModel, Integer, Name, Text, inconsistent, validated
-from railquake.inputs._toml import read_toml
+from railquake.inputs.model import InputModel, Integer, Name, Text, inconsistent, validated
+from railquake.inputs.motion import Motion
 from railquake.inputs.presets import with_absolute_paths
-from railquake.inputs.shaking import Motion
 from railquake.inputs.support import Pier
+from railquake.inputs.toml import read_toml
 from railquake.inputs.units import (
     NonNegativeLength,
     PositiveForce,

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from railquake.errors import InputError
-from railquake.inputs._model import did_you_mean
+from railquake.inputs.model import did_you_mean
 from railquake.inputs.units import to_si
 
 __all__ = ["Kind", "Loop", "check_loop", "read_loop", "resampled"]

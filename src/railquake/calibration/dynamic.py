@@ -18,10 +18,10 @@ from railquake.fem.column import FibreColumn, shake_column
 from railquake.inputs.scenario import scenario
 from railquake.inputs.support import Pier
 from railquake.physics.pier import natural_frequencies, stiffness_matrix
-from railquake.simulation import simulate
+from railquake.run.simulate import simulate
 
 if TYPE_CHECKING:
-    from railquake.inputs.shaking import Motion
+    from railquake.inputs.motion import Motion
 
 __all__ = ["Check", "check_motion", "rayleigh_coefficients"]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from railquake.calibration.calibrate import Calibration
-from railquake.inputs._toml import dumps
+from railquake.inputs.toml import dumps
 from railquake.version import __version__
 
 __all__ = ["preset_text"]

@@ -8,11 +8,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from railquake.assessment import versions
 from railquake.calibration.calibrate import Calibration, LoopFacts, loop_facts
 from railquake.calibration.preset import preset_text
 from railquake.errors import InputError
-from railquake.output import json_text
 from railquake.plots.calibration import (
     HistoryPair,
     ParameterMark,
@@ -20,6 +18,8 @@ from railquake.plots.calibration import (
     write_loop_picture,
     write_parameter_picture,
 )
+from railquake.report.run_folder import json_text
+from railquake.run.assess import versions
 
 __all__ = ["as_dict", "draw_histories", "draw_loops", "summary_lines", "write_calibration"]
 

@@ -20,11 +20,11 @@ def bench(as_json: Json = False, device: Device = "cpu") -> None:
 
     Example: railquake bench --json
     """
-    from railquake.device import require_known
+    from railquake.run.gpu import require_known
 
     require_known(device)
     if device == "cuda":
-        from railquake.bench_gpu import print_bench_gpu, run_bench_gpu
+        from railquake.bench.gpu import print_bench_gpu, run_bench_gpu
 
         gpu = run_bench_gpu()
         if as_json:
@@ -32,7 +32,7 @@ def bench(as_json: Json = False, device: Device = "cpu") -> None:
         else:
             print_bench_gpu(gpu)
         return
-    from railquake.bench import print_bench, run_bench
+    from railquake.bench.speed import print_bench, run_bench
 
     row = run_bench()
     if as_json:

@@ -49,7 +49,7 @@ def calibrate_column(
     Example: railquake calibrate column examples/column.toml --out fit
     """
     from railquake import calibration
-    from railquake.folders import prepare_folder
+    from railquake.files import prepare_folder
 
     described = calibration.load_column(column)
     prepare_folder(out)
@@ -104,7 +104,7 @@ def calibrate_hinge(
     Example: railquake calibrate hinge --cyclic test.csv --length "6.0 m" --out fit
     """
     from railquake import calibration
-    from railquake.folders import prepare_folder
+    from railquake.files import prepare_folder
     from railquake.inputs.support import Pier
     from railquake.inputs.units import to_si
 

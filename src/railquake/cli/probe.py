@@ -45,10 +45,10 @@ def probe_hinge(
     """
     import numpy as np
 
-    from railquake.inputs._model import validated
-    from railquake.inputs._toml import split_override
+    from railquake.inputs.model import validated
     from railquake.inputs.presets import resolved_section
     from railquake.inputs.support import Pier
+    from railquake.inputs.toml import split_override
     from railquake.probe import run_hinge
 
     if hinge not in ("bouc-wen", "elastic"):
@@ -115,7 +115,7 @@ def probe_motion(
 
     Example: railquake probe motion RSN181.AT2 --picture motion.png
     """
-    from railquake.inputs.motion import read_motion
+    from railquake.inputs.ground_motion import read_motion
 
     chosen = int(channel) if channel is not None and channel.isdigit() else channel
     motion = read_motion(file, channel=chosen, units=units, dt=dt, allow_high_pga=allow_high_pga)

@@ -46,7 +46,7 @@ def select(
     """
     import numpy as np
 
-    from railquake.folders import prepare_folder
+    from railquake.files import prepare_folder
     from railquake.suite import load_hazard, manifest_text, select_records, suite_spectra
 
     target = load_hazard(hazard, poe)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.errors import InputError
-from railquake.folders import reason
+from railquake.files import reason
 
 if TYPE_CHECKING:
     from rich.progress import Progress, ProgressColumn
@@ -153,6 +153,6 @@ def write_text(path: Path, text: str) -> None:
 
 def print_json(value: Any) -> None:
     """Print JSON to standard output."""
-    from railquake.output import json_text
+    from railquake.report.run_folder import json_text
 
     typer.echo(json_text(value))

@@ -22,7 +22,7 @@ from railquake.errors import InputError
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 
 @app.command()
@@ -43,8 +43,8 @@ def run(case: Case, out: Out, changes: Changes = None, as_json: Json = False) ->
 
 def run_scenario(scenario: Scenario, out: Path, as_json: bool) -> None:
     """Run a scenario, write its folder and print what matters."""
-    from railquake.folders import prepare_folder
-    from railquake.output import write_run
+    from railquake.files import prepare_folder
+    from railquake.report.run_folder import write_run
 
     prepare_folder(out)
     row = write_run(_simulate(scenario), out)
@@ -56,7 +56,7 @@ def run_scenario(scenario: Scenario, out: Path, as_json: bool) -> None:
 
 
 def _simulate(scenario: Scenario) -> Response:
-    from railquake.simulation import simulate
+    from railquake.run.simulate import simulate
 
     with progress_bar() as (progress, notify):
         return simulate(scenario, progress=progress, notify=notify)
@@ -96,7 +96,7 @@ def presets(
 
     Example: railquake presets bart-berkeley
     """
-    from railquake.inputs._model import did_you_mean
+    from railquake.inputs.model import did_you_mean
     from railquake.inputs.presets import list_presets
 
     known = list_presets()

@@ -6,8 +6,8 @@
 `hinge`      the degrading pinched Bouc-Wen hinge          Eqs. 11, 12
 `wheelrail`  profiles, material, friction, creep law       Eqs. 4 to 8
 `profile`    cross-sections of wheels and rails            Eq. 4
-`motion`     ground motions: readers, scaling, spectra
-`shaking`    which ground motion, and how much of it
+`ground_motion`  records: readers, scaling, spectra
+`motion`     which ground motion, and how much of it
 `solver`     time step and methods
 `scenario`   all of it together: case files and their checks
 `presets`    published parameter sets

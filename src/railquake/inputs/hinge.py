@@ -10,7 +10,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from railquake.inputs._model import InputModel, inconsistent
+from railquake.inputs.model import InputModel, inconsistent
 from railquake.inputs.units import (
     NonNegativeNumber,
     Number,

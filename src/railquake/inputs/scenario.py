@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import Field, ValidationError, model_validator
 
 from railquake.errors import InputError
-from railquake.inputs._model import (
+from railquake.inputs.model import (
     InputModel,
     did_you_mean,
     field_path,
@@ -23,16 +23,16 @@ from railquake.inputs._model import (
     one_line,
     toml_type,
 )
-from railquake.inputs._toml import dumps, is_path, read_toml, with_overrides
+from railquake.inputs.motion import Motion, motion_of_samples
 from railquake.inputs.presets import KINDS, resolved_section, with_absolute_paths
-from railquake.inputs.shaking import Motion, motion_of_samples
 from railquake.inputs.solver import Solver
 from railquake.inputs.support import AtGrade, Pier, PrescribedTrack, Support
+from railquake.inputs.toml import dumps, is_path, read_toml, with_overrides
 from railquake.inputs.vehicle import Vehicle
 from railquake.inputs.wheelrail import WheelRail
 
 if TYPE_CHECKING:
-    from railquake.inputs.motion import GroundMotion
+    from railquake.inputs.ground_motion import GroundMotion
 
 Overrides = Iterable[str] | Mapping[str, Any]
 _SUGGESTIONS = {

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from railquake.errors import InputError
-from railquake.inputs._model import InputModel, Integer, inconsistent
+from railquake.inputs.model import InputModel, Integer, inconsistent
 from railquake.inputs.units import (
     NonNegativeNumber,
     PositiveFrequency,
@@ -74,7 +74,7 @@ class Solver(InputModel):
 
     @property
     def step(self) -> float:
-        """The time step, s; ``dt = "auto"`` has been settled before (`time_step.settled`)."""
+        """The time step, s; ``dt = "auto"`` has been settled before (`run.simulate.settled`)."""
         if self.dt == "auto":
             raise InputError(
                 'solver.dt: "auto" is not settled; run the scenario by simulate or simulate_many, '

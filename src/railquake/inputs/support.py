@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field
 
 from railquake.errors import InputError
-from railquake.inputs._model import Flag, InputModel, Name, Text, validated
 from railquake.inputs.hinge import BoucWenHinge
+from railquake.inputs.model import Flag, InputModel, Name, Text, validated
 from railquake.inputs.units import (
     Length,
     PositiveLength,

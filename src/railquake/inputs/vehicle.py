@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from railquake.inputs._model import (
+from railquake.inputs.model import (
     Flag,
     InputModel,
     Integer,

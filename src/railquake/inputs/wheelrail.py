@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from railquake.errors import InputError
-from railquake.inputs._model import Flag, InputModel, Name, Text, inconsistent, validated
-from railquake.inputs._toml import is_path
+from railquake.inputs.model import Flag, InputModel, Name, Text, inconsistent, validated
+from railquake.inputs.toml import is_path
 from railquake.inputs.units import (
     NonNegativeNumber,
     Number,

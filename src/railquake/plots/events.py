@@ -12,7 +12,7 @@ from railquake.plots.style import BLACK, FAINT, GREEN, ORANGE, PURPLE, RED, plai
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 EVENT_COLOURS = {
     "flange contact": ORANGE,

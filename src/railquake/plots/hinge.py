@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 __all__ = ["write_hinge_loop", "write_hinge_picture"]
 

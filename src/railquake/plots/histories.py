@@ -40,7 +40,7 @@ from railquake.plots.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 __all__ = ["write_histories"]
 

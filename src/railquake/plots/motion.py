@@ -22,7 +22,7 @@ from railquake.plots.style import (
 )
 
 if TYPE_CHECKING:
-    from railquake.inputs.motion import GroundMotion
+    from railquake.inputs.ground_motion import GroundMotion
 
 __all__ = ["write_motion_picture"]
 
@@ -36,8 +36,8 @@ def write_motion_picture(motion: GroundMotion, path: Path) -> Path:
     """Draw acceleration, velocity, displacement and the 5 % response spectrum of a motion."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    from railquake.inputs.motion import response_spectrum
-    from railquake.inputs.motion.motion import cumulative_trapezoid
+    from railquake.inputs.ground_motion import response_spectrum
+    from railquake.inputs.ground_motion.motion import cumulative_trapezoid
 
     made = blank(11.0, 5.4)
     velocity = motion.velocity()

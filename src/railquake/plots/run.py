@@ -13,7 +13,7 @@ from railquake.plots.roll import write_relative_roll
 from railquake.plots.section import write_section
 
 if TYPE_CHECKING:
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 __all__ = ["write_pictures"]
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from railquake.inputs.profile import Profile
     from railquake.inputs.wheelrail import WheelRail
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 __all__ = ["write_section"]
 

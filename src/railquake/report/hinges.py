@@ -98,7 +98,7 @@ def _gained_most(context: Context, rows: pd.DataFrame) -> int | None:
 
 
 def _loop(context: Context, row: int, what: str) -> Panel:
-    from railquake.simulation import simulate
+    from railquake.run.simulate import simulate
 
     context.notify(f"running row {row} again for its hinge ...")
     scenario = context.results.scenario(row)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from railquake.errors import InputError
-from railquake.inputs.motion import STANDARD_GRAVITY
+from railquake.inputs.ground_motion import STANDARD_GRAVITY
 from railquake.plots.style import BLUE, GREY, RED
 from railquake.report.chart import Band, Chart, Layer, Line, Panel
 from railquake.report.context import ReportSection, Text

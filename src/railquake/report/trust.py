@@ -113,7 +113,7 @@ def _time_step(context: Context) -> list[Any]:
 
 def _halved(context: Context) -> list[Any]:
     """Some runs again with half the step."""
-    from railquake.lockstep import simulate_many
+    from railquake.run.many import simulate_many
 
     rows = _telling(context)
     context.notify(f"running {len(rows)} rows again with half the time step ...")

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from railquake.errors import InputError
-from railquake.folders import prepare_folder
+from railquake.files import prepare_folder
 from railquake.fragility import OUTCOMES, write_csv
 from railquake.report import (
     curves,

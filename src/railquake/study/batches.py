@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import failed_row, run_here
+from railquake.run.many import failed_row, run_here
 from railquake.study.design import Design
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
+    from railquake.run.time_step import TimeStep
     from railquake.study.file import Study
-    from railquake.time_step import TimeStep
 
 __all__ = ["Batch", "Ended", "kept_design", "run_batch"]
 

@@ -12,21 +12,21 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.inputs._model import validated
-from railquake.inputs._toml import with_overrides
+from railquake.inputs.model import validated
+from railquake.inputs.motion import Motion
 from railquake.inputs.scenario import (
     Scenario,
     fingerprint,
     hash_of_fingerprints,
     scenario_from_dict,
 )
-from railquake.inputs.shaking import Motion
+from railquake.inputs.toml import with_overrides
 from railquake.study.axes import Axis, DistributionAxis, sampled
 from railquake.suite import Suite, SuiteMember
 
 if TYPE_CHECKING:
+    from railquake.run.time_step import TimeStep
     from railquake.study.file import Study
-    from railquake.time_step import TimeStep
 
 __all__ = ["Design", "Point"]
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.lockstep import (
+from railquake.run.many import (
     Device,
     choose_time_step,
     group_of,
@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-    from railquake.lockstep import MakeLanes
+    from railquake.run.many import MakeLanes
+    from railquake.run.time_step import TimeStep
     from railquake.study.file import Study
-    from railquake.time_step import TimeStep
 
 __all__ = ["StudyProgress", "run_study"]
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.inputs._model import did_you_mean, toml_type
-from railquake.inputs._toml import is_path, merged, read_toml, with_overrides
+from railquake.inputs.model import did_you_mean, toml_type
 from railquake.inputs.presets import KINDS, with_absolute_paths
 from railquake.inputs.scenario import Overrides, Scenario
+from railquake.inputs.toml import is_path, merged, read_toml, with_overrides
 from railquake.inputs.units import shown
 from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
@@ -23,7 +23,7 @@ from railquake.suite import SUITES, Suite, SuiteMember, load_suite
 if TYPE_CHECKING:
     import pandas as pd
 
-    from railquake.lockstep import Device
+    from railquake.run.many import Device
     from railquake.study.engine import StudyProgress
 
 __all__ = ["AUTO", "Study", "load_study"]

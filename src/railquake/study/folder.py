@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.folders import prepare_folder, reason
-from railquake.inputs._toml import dumps, read_toml
+from railquake.files import prepare_folder, reason
+from railquake.inputs.toml import dumps, read_toml
 from railquake.inputs.units import shown
+from railquake.run.time_step import TimeStep
 from railquake.study.table import distinct
-from railquake.time_step import TimeStep
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
-from railquake.inputs._model import did_you_mean, toml_type
-from railquake.inputs._toml import is_path
-from railquake.inputs.paths import Input, input_at
+from railquake.inputs.fields import Input, input_at
+from railquake.inputs.model import did_you_mean, toml_type
+from railquake.inputs.toml import is_path
 from railquake.inputs.units import shown, to_si
 from railquake.study.axes import Axis, DistributionAxis, ListAxis, Variant, VariantAxis
 from railquake.study.distributions import DISTRIBUTIONS, METHODS, Sampling

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from railquake.errors import InputError
-from railquake.inputs._toml import read_toml
+from railquake.inputs.toml import read_toml
 from railquake.study.folder import STUDY_FILE, TABLE_FILE, ResultsFolder, no_note, read_parquet
 from railquake.study.table import distinct, table_schema, to_pandas
 

@@ -61,7 +61,7 @@ def _found(row: Row, records: Path) -> Row:
     """The row, with the name that its record has in the folder."""
     if is_file(records / row.file):
         return row
-    from railquake.inputs.motion import STANDARD_GRAVITY, read_motion
+    from railquake.inputs.ground_motion import STANDARD_GRAVITY, read_motion
 
     pga = float(row.cells["pga_g"]) * STANDARD_GRAVITY
     name = re.compile(rf"rsn0*{row.cells['rsn']}[^0-9].*\.at2", re.IGNORECASE)

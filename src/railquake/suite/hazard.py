@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railquake.errors import InputError
-from railquake.inputs.motion import STANDARD_GRAVITY
+from railquake.inputs.ground_motion import STANDARD_GRAVITY
 
 __all__ = ["Hazard", "TargetSpectrum", "hazard_names", "load_hazard", "read_hazard"]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from railquake.inputs.motion import GroundMotion
+    from railquake.inputs.ground_motion import GroundMotion
 
 __all__ = ["Suite", "SuiteMember"]
 
@@ -43,8 +43,8 @@ class SuiteMember:
         InputError
             If a record's file cannot be used.
         """
-        from railquake.inputs._model import validated
-        from railquake.inputs.shaking import Motion
+        from railquake.inputs.model import validated
+        from railquake.inputs.motion import Motion
 
         table = {**self.motion, "scale": self.scale_factor}
         return validated(Motion, table, f"motion {self.name}").lateral_motion()

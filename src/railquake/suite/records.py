@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from railquake.errors import InputError
-from railquake.inputs.motion import GroundMotion, read_motion, record_contents
+from railquake.inputs.ground_motion import GroundMotion, read_motion, record_contents
 
 __all__ = ["Component", "Skipped", "find_components"]
 

@@ -37,7 +37,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railquake.errors import InputError
-from railquake.inputs.motion import STANDARD_GRAVITY, response_spectrum
+from railquake.inputs.ground_motion import STANDARD_GRAVITY, response_spectrum
 from railquake.suite.hazard import TargetSpectrum
 from railquake.suite.model import Suite, SuiteMember
 from railquake.suite.records import Component, Skipped, find_components

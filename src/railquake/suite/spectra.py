@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railquake.errors import InputError
-from railquake.inputs.motion import GroundMotion, response_spectrum
+from railquake.inputs.ground_motion import GroundMotion, response_spectrum
 from railquake.suite.model import Suite
 
 if TYPE_CHECKING:

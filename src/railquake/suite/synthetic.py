@@ -1,7 +1,7 @@
 r"""How the built-in suite of synthetic motions was made; its table is data beside this module.
 
-The stochastic model of `railquake.inputs.motion.synthetic` gives motions of one spectral shape
-with little scatter.  Real records of one hazard differ in frequency content and duration as well:
+The stochastic model of `railquake.inputs.ground_motion.synthetic` gives motions of one spectral
+shape with little scatter.  Real records of one hazard differ in frequency content and duration as well:
 here the model's parameters differ from motion to motion.
 
 1. `POOL` candidates: parameters from `SMALLEST` to `LARGEST`, spread evenly in their logarithms
@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from railquake.inputs.motion import STANDARD_GRAVITY, response_spectrum, synthetic_motion
+from railquake.inputs.ground_motion import STANDARD_GRAVITY, response_spectrum, synthetic_motion
 from railquake.suite.hazard import load_hazard
 from railquake.suite.selection import POINTS, choose, scale_factors
 

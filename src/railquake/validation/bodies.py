@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     from railquake.assembly import System
-    from railquake.inputs.motion import GroundMotion
+    from railquake.inputs.ground_motion import GroundMotion
 
 __all__ = ["GRAVITY", "block", "disturbed", "motion", "pair_of"]
 
@@ -43,7 +43,7 @@ def pair_of(height: float, **values: Any) -> dict[str, Any]:
 
 def motion(step: float, acceleration: ArrayLike) -> GroundMotion:
     """Ground acceleration, m/s2, at steps of so many seconds."""
-    from railquake.inputs.motion import GroundMotion
+    from railquake.inputs.ground_motion import GroundMotion
 
     return GroundMotion("test", step, np.asarray(acceleration, dtype=float))
 

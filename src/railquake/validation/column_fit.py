@@ -57,7 +57,7 @@ def compare(data: Path | None) -> Outcome:
     """Fit, shake and compare."""
     from railquake.calibration import calibrate_column
     from railquake.calibration.report import draw_histories, draw_loops, draw_parameters
-    from railquake.inputs.shaking import Motion
+    from railquake.inputs.motion import Motion
 
     assert data is not None  # NEEDS
     motions = tuple(

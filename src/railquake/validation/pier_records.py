@@ -14,14 +14,14 @@ import numpy as np
 from railquake.fem.pier import PierHistory, opensees_pier
 from railquake.inputs.scenario import scenario
 from railquake.inputs.support import Pier
-from railquake.simulation import simulate
+from railquake.run.simulate import simulate
 from railquake.validation.comparison import Outcome, Picture, Result, of_peak
 from railquake.validation.pictures import write_histories, write_loops
 from railquake.validation.reference import paper_record
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 __all__ = ["FILES", "RECORDS", "SETTINGS", "compare_pier"]
 

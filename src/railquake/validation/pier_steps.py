@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from railquake.inputs.motion import read_motion
+from railquake.inputs.ground_motion import read_motion
 from railquake.inputs.support import Pier
 from railquake.validation.comparison import Outcome, Picture, of_peak, relative
 from railquake.validation.pictures import write_histories

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError, on_one_line
-from railquake.inputs._model import did_you_mean
+from railquake.inputs.model import did_you_mean
 from railquake.validation import registry
 from railquake.validation.comparison import Comparison, Outcome, Unavailable
 

@@ -8,7 +8,7 @@ import pytest
 import railquake as rq
 from railquake.assembly import statics
 from railquake.assembly.system import GRAVITY
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.physics import constant, state
 from railquake.physics.kernel import PYTHON
 from railquake.physics.vehicle import kernel_order

@@ -5,7 +5,7 @@ import pytest
 
 from railquake.errors import InputError
 from railquake.fem.pier import opensees_pier, time_opensees_pier
-from railquake.inputs.motion import read_motion
+from railquake.inputs.ground_motion import read_motion
 from railquake.inputs.support import Pier
 
 

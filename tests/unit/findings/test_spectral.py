@@ -7,7 +7,7 @@ import pytest
 
 import railquake as rq
 from railquake.findings import first_period, with_spectral_acceleration
-from railquake.inputs.motion import response_spectrum
+from railquake.inputs.ground_motion import response_spectrum
 
 
 def case(support="bart-berkeley", scale=1.0, **changes):

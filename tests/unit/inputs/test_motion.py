@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
-from railquake.inputs.motion import STANDARD_GRAVITY, GroundMotion
+from railquake.inputs.ground_motion import STANDARD_GRAVITY, GroundMotion
 
 
 def sine(frequency: float = 1.0, cycles: int = 10, dt: float = 0.001) -> GroundMotion:

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from railquake.errors import InputError
-from railquake.inputs.motion import GroundMotion, read_motion
+from railquake.inputs.ground_motion import GroundMotion, read_motion
 
 FILES = runpy.run_path(str(Path(__file__).with_name("motion_files.py")))
 TEXTS = (*FILES["SAMPLES"].values(), FILES["csmip"](2), FILES["cosmos"](2), FILES["usc"]())

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
-from railquake.inputs.motion import STANDARD_GRAVITY, read_motion
+from railquake.inputs.ground_motion import STANDARD_GRAVITY, read_motion
 
 FILES = runpy.run_path(str(Path(__file__).with_name("motion_files.py")))
 VALUES, SAMPLES, fields = FILES["VALUES"], FILES["SAMPLES"], FILES["fields"]

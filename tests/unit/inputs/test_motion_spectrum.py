@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
-from railquake.inputs.motion import (
+from railquake.inputs.ground_motion import (
     GroundMotion,
     oscillator_response,
     response_spectrum,

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
-from railquake.inputs.motion import (
+from railquake.inputs.ground_motion import (
     STANDARD_GRAVITY,
     SyntheticParameters,
     synthetic_from_mapping,
     synthetic_motion,
 )
-from railquake.inputs.motion.synthetic import envelope, filter_gain, white_noise
+from railquake.inputs.ground_motion.synthetic import envelope, filter_gain, white_noise
 
 NOISE_OF_SEED_1 = [0.7141932764878985, 0.302315998956082, 0.9107613142984461, -0.10107255277433493]
 MOTION_OF_SEED_1 = [

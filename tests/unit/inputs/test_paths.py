@@ -3,7 +3,7 @@
 import pytest
 
 from railquake.errors import InputError
-from railquake.inputs.paths import input_at
+from railquake.inputs.fields import input_at
 from railquake.inputs.scenario import Scenario, scenario
 
 

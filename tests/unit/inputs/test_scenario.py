@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from railquake.errors import InputError
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.inputs.scenario import load_scenario, scenario, scenario_from_dict
 from railquake.inputs.schema import json_schema
 from railquake.inputs.support import AtGrade, Pier, PrescribedTrack

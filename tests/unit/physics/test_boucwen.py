@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from railquake.assembly.statics import UNKNOWN_DEGRADATION
 from railquake.assembly.system import hinge_parameters
-from railquake.inputs._model import validated
 from railquake.inputs.hinge import BoucWenHinge
+from railquake.inputs.model import validated
 from railquake.inputs.presets import resolved_section
 from railquake.inputs.support import Pier
 from railquake.physics import boucwen

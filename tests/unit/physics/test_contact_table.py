@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import railquake as rq
 from railquake.assembly.geometry import ROLL_AXIS, SHIFT_AXIS
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.physics import constant, march, state
 from railquake.physics.profiles import axis_nodes, zone_contact
 from railquake.physics.vehicle import DOF_COUNT

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import railquake as rq
-from railquake.inputs.motion import GroundMotion
+from railquake.inputs.ground_motion import GroundMotion
 from railquake.physics import constant, march, state
 from railquake.physics.vehicle import kernel_order
 

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from railquake.cli import main
-from railquake.inputs._toml import dumps
+from railquake.inputs.toml import dumps
 from railquake.study import cluster
 from study_files import BASE, small, tables, untimed
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import railquake as rq
-from railquake import lockstep
 from railquake.errors import InputError
+from railquake.run import many
+from railquake.run.time_step import TimeStep
 from railquake.study import batches, engine, open_results
 from railquake.study.design import Design
 from railquake.study.plan import plan
 from railquake.study.table import MEASURES
-from railquake.time_step import TimeStep
 from study_files import BASE, MODELS, small, tables, untimed
 
 
@@ -74,7 +74,7 @@ def gpu(monkeypatch):
 
     def on_cpu(scenarios, *, threads, device):
         asked.append((threads, device))
-        return lockstep.simulate_many(scenarios, threads=threads)
+        return many.simulate_many(scenarios, threads=threads)
 
     def lanes_on(device, real=engine.lanes_on):
         asked.append(device)
@@ -105,7 +105,7 @@ def test_a_stop_of_a_gpus_study_leaves_what_has_finished(gpu, tmp_path):
 
 
 def test_a_gpu_that_is_not_there_is_refused_before_anything_is_written(tmp_path, monkeypatch):
-    monkeypatch.setattr("railquake.device.missing_for_cuda", lambda: "none here")
+    monkeypatch.setattr("railquake.run.gpu.missing_for_cuda", lambda: "none here")
     with pytest.raises(InputError, match="device: cuda cannot be used: none here"):
         study().run(tmp_path / "out", device="cuda")
     with pytest.raises(InputError, match='device: must be cpu or cuda, found "gpu"'):
@@ -130,12 +130,12 @@ def test_failed_runs_are_rows_with_their_reason(tmp_path):
 
 
 def test_an_unforeseen_fault_of_one_run_is_a_row_and_the_others_finish(tmp_path, monkeypatch):
-    def assemble(scenario, real=lockstep.assemble):
+    def assemble(scenario, real=many.assemble):
         if scenario.motion.scale == 2.0:
             raise ZeroDivisionError("nobody foresaw this")
         return real(scenario)
 
-    monkeypatch.setattr(lockstep, "assemble", assemble)
+    monkeypatch.setattr(many, "assemble", assemble)
     table = study(tables(**{"motion.scale": [1.0, 2.0, 3.0]})).run(tmp_path)
     assert table["status"].tolist() == ["safe", "failed", "safe"]
     assert table["error"][1] == "unexpected: ZeroDivisionError: nobody foresaw this"

@@ -6,7 +6,7 @@ import pytest
 
 import railquake as rq
 from railquake.errors import InputError
-from railquake.inputs._toml import dumps
+from railquake.inputs.toml import dumps
 from study_files import BASE, MODELS, small, tables
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
-from railquake.inputs.motion import synthetic_motion
+from railquake.inputs.ground_motion import synthetic_motion
 from railquake.inputs.scenario import load_scenario, scenario
 from railquake.suite import load_hazard, load_suite, suite_spectra
 from railquake.suite.built_in import _data

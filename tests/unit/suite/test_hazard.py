@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
-from railquake.inputs.motion import STANDARD_GRAVITY
+from railquake.inputs.ground_motion import STANDARD_GRAVITY
 from railquake.suite import hazard_names, load_hazard, read_hazard
 
 LEVELS = {0.5: 0.21, 0.1: 0.74, 0.05: 1.0, 0.02: 1.38}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
-from railquake.inputs.motion import response_spectrum
+from railquake.inputs.ground_motion import response_spectrum
 from railquake.inputs.scenario import scenario
 from railquake.plots.suite import write_suite_picture
 from railquake.suite import (

@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
-from railquake.inputs._model import did_you_mean, toml_type
-from railquake.inputs._toml import is_path, merged, read_toml
+from railquake.inputs.model import did_you_mean, toml_type
+from railquake.inputs.toml import is_path, merged, read_toml
 from railquake.inputs.wheelrail import spec_from_text
 
 KINDS = ("vehicle", "support", "wheelrail")

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from railquake.errors import InputError
-from railquake.inputs._model import InputModel, did_you_mean
+from railquake.inputs.model import InputModel, did_you_mean
 from railquake.inputs.presets import KINDS
 from railquake.inputs.scenario import Scenario
 from railquake.inputs.units import Quantity, Sign, shown, to_si
@@ -130,7 +130,7 @@ def _in_named(path: str, models: list[type[BaseModel]], rest: list[str], where: 
 
 
 def _synthetic(path: str, rest: list[str], where: str) -> Input:
-    from railquake.inputs.motion.synthetic import DIMENSIONS
+    from railquake.inputs.ground_motion.synthetic import DIMENSIONS
 
     known = ["seed", *DIMENSIONS]
     if len(rest) != 1 or rest[0] not in known:

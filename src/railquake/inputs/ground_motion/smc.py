@@ -12,7 +12,7 @@ import re
 
 import numpy as np
 
-from railquake.inputs.motion.text import (
+from railquake.inputs.ground_motion.text import (
     Channel,
     Options,
     RecordFile,

@@ -11,8 +11,8 @@ import re
 
 import numpy as np
 
-from railquake.inputs.motion.motion import MAX_SAMPLES
-from railquake.inputs.motion.text import (
+from railquake.inputs.ground_motion.motion import MAX_SAMPLES
+from railquake.inputs.ground_motion.text import (
     Channel,
     Options,
     RecordFile,

@@ -11,7 +11,7 @@ import re
 
 import numpy as np
 
-from railquake.inputs.motion.text import (
+from railquake.inputs.ground_motion.text import (
     NUMBER,
     Channel,
     Options,

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from railquake.assembly import System, assemble
-from railquake.assessment import assess
 from railquake.physics import state
 from railquake.physics.energy import audit
 from railquake.physics.kernel import SCALAR, Target
-from railquake.response import Response, channels
-from railquake.time_step import TimeStep, search_time_step
+from railquake.run.assess import assess
+from railquake.run.response import Response, channels
+from railquake.run.time_step import TimeStep, search_time_step
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
@@ -100,7 +100,7 @@ def settled(
 ) -> tuple[Scenario, TimeStep | None]:
     """A scenario with its time step, and how that was chosen where it says ``dt = "auto"``.
 
-    Many scenarios of one study are better settled together, by `lockstep.choose_time_step`.
+    Many scenarios of one study are better settled together, by `many.choose_time_step`.
     """
     if scenario.solver.dt != "auto":
         return scenario, None

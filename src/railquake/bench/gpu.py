@@ -14,10 +14,10 @@ from collections.abc import Iterator
 from itertools import cycle, islice
 from typing import TYPE_CHECKING, Any
 
-from railquake.assessment import versions
 from railquake.inputs.scenario import scenario
-from railquake.lockstep import simulate_many
 from railquake.physics.kernel import device_name, missing_for_cuda
+from railquake.run.assess import versions
+from railquake.run.many import simulate_many
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario

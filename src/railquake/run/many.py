@@ -19,15 +19,15 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 
 from railquake.assembly import System, assemble
-from railquake.assessment import assess
-from railquake.device import DeviceLanes, require_device, require_known
 from railquake.errors import InputError, on_one_line
 from railquake.physics import state
 from railquake.physics.energy import audit
 from railquake.physics.kernel import lockstep_target
-from railquake.response import Response
-from railquake.simulation import COMPILING, settled, simulate
-from railquake.time_step import TimeStep, search_time_step
+from railquake.run.assess import assess
+from railquake.run.gpu import DeviceLanes, require_device, require_known
+from railquake.run.response import Response
+from railquake.run.simulate import COMPILING, settled, simulate
+from railquake.run.time_step import TimeStep, search_time_step
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario

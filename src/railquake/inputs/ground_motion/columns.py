@@ -13,8 +13,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from railquake.inputs.motion import units as unit_table
-from railquake.inputs.motion.text import (
+from railquake.inputs.ground_motion import units as unit_table
+from railquake.inputs.ground_motion.text import (
     Channel,
     Options,
     RecordFile,

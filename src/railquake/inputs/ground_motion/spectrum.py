@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railquake.errors import InputError
-from railquake.inputs.motion.motion import GroundMotion
+from railquake.inputs.ground_motion.motion import GroundMotion
 
 POINTS_PER_PERIOD = 40
 """Peaks are looked for at least this often in each period (0.3 % below the true peak at most)."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 
-from railquake.inputs.motion import units as unit_table
-from railquake.inputs.motion.text import (
+from railquake.inputs.ground_motion import units as unit_table
+from railquake.inputs.ground_motion.text import (
     NUMBER,
     Channel,
     Options,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray
 
     from railquake.assembly import System
-    from railquake.time_step import TimeStep
+    from railquake.run.time_step import TimeStep
 
 __all__ = ["EVENT_NAMES", "Event", "Response", "channels"]
 

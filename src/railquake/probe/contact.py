@@ -1,85 +1,23 @@
-"""One component by itself: hinge under a prescribed rotation, a standing contact, creep force."""
+"""One wheelset that stands still on two rails."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from railquake.assembly.geometry import FLOOR, STEEPEST, build_geometry
-from railquake.assembly.statics import UNKNOWN_DEGRADATION
-from railquake.assembly.system import CREEP_LAWS, hinge_parameters
-from railquake.assembly.vehicle import VehicleMatrices
 from railquake.errors import InputError
-from railquake.physics import boucwen
 from railquake.physics.contact import effective_modulus, hertz_coefficients, hertz_lookup
-from railquake.physics.creep import kalker_coefficients
 from railquake.physics.profiles import Geometry, zone_extremum
-from railquake.physics.vehicle import fixed_wheelset_modes
 
 if TYPE_CHECKING:
-    from railquake.inputs.hinge import BoucWenHinge
-    from railquake.inputs.vehicle import Vehicle
     from railquake.inputs.wheelrail import WheelRail
 
-__all__ = [
-    "Patch",
-    "StandingWheelset",
-    "creep_force",
-    "mode_labels",
-    "run_hinge",
-    "standing_contact",
-    "standing_wheelset",
-]
-
-Array = np.ndarray[Any, np.dtype[np.float64]]
-
-
-def run_hinge(hinge: BoucWenHinge, rotation: Array, *, elastic: bool = False) -> Array:
-    """Drive a virgin hinge along a path of rotations.
-
-    Parameters
-    ----------
-    hinge : BoucWenHinge
-    rotation : array, shape (n,)
-        rad; the step from zero to the first one counts.
-    elastic : bool
-        Whether M = k0 x instead.
-
-    Returns
-    -------
-    array, shape (n, 3)
-        Moment (N m), hysteretic rotation z (rad) and damage index d.
-
-    Raises
-    ------
-    InputError
-        If the iteration does not converge in a step.
-    """
-    parameters = hinge_parameters(hinge, tolerance=1e-13, iterations=200)
-    law = boucwen.advance_elastic if elastic else boucwen.advance
-    x = z = eps = x_max = 0.0
-    rows = np.empty((len(rotation), 3))
-    for k, target in enumerate(rotation):
-        step = float(target) - x
-        try:
-            _, z_new, eps, x_max, moment, _, correction, *_ = law(
-                x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, step, 0.0, *parameters
-            )
-        except ArithmeticError:  # a number too large for a float
-            z_new = correction = math.nan
-        if not abs(correction) <= max(parameters[-2], 1e-15 * abs(z_new)):
-            raise InputError(
-                f"path, row {k + 1}: the hinge does not converge over a step of {step:.3g} rad; "
-                "take smaller steps, in rad"
-            )
-        x, z = float(target), z_new
-        damage = boucwen.damage_index(eps, x_max, parameters[5], parameters[6])
-        rows[k] = moment, z, damage
-    return rows
+__all__ = ["Patch", "StandingWheelset", "standing_contact", "standing_wheelset"]
 
 
 @dataclass(frozen=True)
@@ -246,66 +184,3 @@ def _normal(zone: tuple[float, ...], z: float, geometry: Geometry) -> tuple[floa
         geometry.hertz_spin,
     )  # fmt: skip
     return approach, stiffness * approach**1.5
-
-
-def creep_force(
-    semi_axes: tuple[float, float],
-    load: float,
-    creepage: float,
-    spin: float,
-    friction: float,
-    shear_modulus: float,
-    poisson: float,
-    law: str,
-) -> tuple[float, float]:
-    """Lateral creep force on the wheel of one contact ellipse.
-
-    Parameters
-    ----------
-    semi_axes : (float, float)
-        a along the rolling direction and b across, m.
-    load : float
-        Normal force, N.
-    creepage, spin : float
-        Of the wheel relative to the rail: lateral, 1, and about the normal, 1/m.
-    friction, shear_modulus, poisson : float
-        mu, G (Pa), nu.
-    law : {"she", "coulomb", "carter", "polach"}
-
-    Returns
-    -------
-    force, f22 : float
-        N.
-    """
-    a, b = semi_axes
-    _, c22, c23 = kalker_coefficients(np.array([a / b]), poisson)
-    f22 = shear_modulus * a * b * float(c22[0])
-    f23 = shear_modulus * (a * b) ** 1.5 * float(c23[0])
-    linear = -f22 * creepage - f23 * spin
-    return linear * CREEP_LAWS[law](linear, friction * load), f22
-
-
-def mode_labels(vehicle: Vehicle, matrices: VehicleMatrices) -> list[str]:
-    """What each mode with the wheelset fixed looks like.
-
-    The heaviest body is the car body.  A mode is named by the body with the largest share of its
-    kinetic energy; lateral and roll together are a sway, lower if the body turns about a point
-    below its centre of gravity (it leans the way it moves) and upper otherwise.
-    """
-    frequencies, shapes = fixed_wheelset_modes(matrices.mass, matrices.stiffness)
-    names = matrices.bodies[:-1]
-    masses = [body.mass for body in vehicle.bodies]
-    heaviest = vehicle.bodies[int(np.argmax(masses))].name
-    labels = []
-    for k in range(len(frequencies)):
-        energy = (matrices.mass[:-3] * shapes[:, k] ** 2).reshape(-1, 3)
-        body = int(np.argmax(energy.sum(axis=1)))
-        y, _, roll = shapes[3 * body : 3 * body + 3, k]
-        name = "Carbody" if names[body] == heaviest else names[body].capitalize()
-        if energy[body, 1] > energy[body, 0] + energy[body, 2]:
-            labels.append(f"{name} bounce")
-        elif names[body] == heaviest:
-            labels.append(f"{name} {'lower' if y * roll > 0.0 else 'upper'} sway")
-        else:
-            labels.append(f"{name} {'roll' if energy[body, 2] > energy[body, 0] else 'lateral'}")
-    return labels

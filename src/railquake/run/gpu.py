@@ -59,7 +59,7 @@ def require_device() -> None:
 
 
 class DeviceLanes:
-    """What `lockstep.Lanes` asks for, on the GPU.
+    """What `many.Lanes` asks for, on the GPU.
 
     Parameters
     ----------

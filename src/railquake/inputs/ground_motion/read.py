@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from railquake.inputs.motion import at2, columns, cosmos, csmip, knet, smc, usc
-from railquake.inputs.motion.motion import STANDARD_GRAVITY, GroundMotion
-from railquake.inputs.motion.text import (
+from railquake.inputs.ground_motion import at2, columns, cosmos, csmip, knet, smc, usc
+from railquake.inputs.ground_motion.motion import STANDARD_GRAVITY, GroundMotion
+from railquake.inputs.ground_motion.text import (
     Channel,
     Options,
     RecordFile,

@@ -1,6 +1,6 @@
 """Where the ground's motion comes from: the case file's section ``[motion]``.
 
-The motions themselves, and the readers of records, are in `railquake.inputs.motion`.
+The motions themselves, and the readers of records, are in `railquake.inputs.ground_motion`.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from railquake.errors import InputError
-from railquake.inputs._model import Flag, InputModel, Integer, Name, Text, inconsistent
+from railquake.inputs.model import Flag, InputModel, Integer, Name, Text, inconsistent
 from railquake.inputs.units import Acceleration, Number, PositiveTime
 
 if TYPE_CHECKING:
-    from railquake.inputs.motion import GroundMotion
+    from railquake.inputs.ground_motion import GroundMotion
 
 
 def _synthetic_in_si(table: Any) -> dict[str, Any] | None:
     """All parameters of a synthetic motion, defaults included, in SI units."""
     if table is None:
         return None
-    from railquake.inputs.motion import synthetic_from_mapping
+    from railquake.inputs.ground_motion import synthetic_from_mapping
 
     try:
         parameters = asdict(synthetic_from_mapping(table, "synthetic"))
@@ -158,7 +158,7 @@ def _record(
     allow_high_pga: bool,
 ) -> GroundMotion:
     """Read a record once for the many runs of a study, again when the file has changed."""
-    from railquake.inputs.motion import read_motion
+    from railquake.inputs.ground_motion import read_motion
 
     return read_motion(path, channel=channel, units=units, dt=dt, allow_high_pga=allow_high_pga)
 
@@ -166,7 +166,7 @@ def _record(
 @lru_cache(maxsize=64)
 def _synthetic(parameters: tuple[tuple[str, int | float], ...]) -> GroundMotion:
     """Make a synthetic motion once for the many runs of a study."""
-    from railquake.inputs.motion import synthetic_motion
+    from railquake.inputs.ground_motion import synthetic_motion
 
     return synthetic_motion(dict(parameters))
 
@@ -185,7 +185,7 @@ def motion_of_samples(name: str, dt: float | None, samples: Sequence[float]) -> 
     """
     import numpy as np
 
-    from railquake.inputs.motion import GroundMotion
+    from railquake.inputs.ground_motion import GroundMotion
 
     assert dt is not None  # checked where samples are taken in
     return GroundMotion(name, dt, np.array(samples, dtype=np.float64))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from railquake.physics import constant, state
 
 if TYPE_CHECKING:
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 __all__ = ["assess", "versions"]
 

@@ -1,13 +1,18 @@
 """Ground motions: records of many formats, synthetic motions, response spectra."""
 
-from railquake.inputs.motion.motion import STANDARD_GRAVITY, GroundMotion
-from railquake.inputs.motion.read import FORMATS, RecordContents, read_motion, record_contents
-from railquake.inputs.motion.spectrum import (
+from railquake.inputs.ground_motion.motion import STANDARD_GRAVITY, GroundMotion
+from railquake.inputs.ground_motion.read import (
+    FORMATS,
+    RecordContents,
+    read_motion,
+    record_contents,
+)
+from railquake.inputs.ground_motion.spectrum import (
     ResponseSpectrum,
     oscillator_response,
     response_spectrum,
 )
-from railquake.inputs.motion.synthetic import (
+from railquake.inputs.ground_motion.synthetic import (
     SyntheticParameters,
     synthetic_from_mapping,
     synthetic_motion,

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from railquake.inputs.motion.motion import STANDARD_GRAVITY
+from railquake.inputs.ground_motion.motion import STANDARD_GRAVITY
 
 # Spelling after `_plain` -> factor to m/s2.  "/s/s" is folded into "/s2" there.
 ACCELERATION = {

@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from railquake.inputs.motion.text import (
+from railquake.inputs.ground_motion.text import (
     NUMBER,
     Channel,
     Options,

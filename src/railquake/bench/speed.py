@@ -18,13 +18,13 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from railquake.assessment import versions
 from railquake.errors import InputError
 from railquake.fem.pier import time_opensees_pier
 from railquake.inputs.scenario import scenario
-from railquake.lockstep import simulate_many
 from railquake.physics.kernel import lockstep_target
-from railquake.simulation import simulate
+from railquake.run.assess import versions
+from railquake.run.many import simulate_many
+from railquake.run.simulate import simulate
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario

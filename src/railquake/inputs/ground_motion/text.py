@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railquake.errors import InputError
-from railquake.inputs.motion import units as unit_table
+from railquake.inputs.ground_motion import units as unit_table
 
 MAX_BYTES = 512 * 1024 * 1024
 """A larger file is refused before it is read: no strong-motion record comes near it."""

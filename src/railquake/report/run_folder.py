@@ -14,12 +14,12 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from railquake.assessment import assess
 from railquake.errors import InputError
-from railquake.folders import reason
+from railquake.files import reason
+from railquake.run.assess import assess
 
 if TYPE_CHECKING:
-    from railquake.response import Response
+    from railquake.run.response import Response
 
 __all__ = ["json_text", "write_run"]
 

@@ -46,7 +46,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railquake.errors import InputError
-from railquake.inputs.motion.motion import (
+from railquake.inputs.ground_motion.motion import (
     STANDARD_GRAVITY,
     GroundMotion,
     cumulative_trapezoid,
