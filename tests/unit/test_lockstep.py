@@ -12,6 +12,7 @@ import pytest
 import railquake as rq
 from railquake.assembly.system import System
 from railquake.physics.kernel import lockstep_target, vector_doubles, vector_instructions
+from railquake.run import many
 
 SHORT = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
 TIMINGS = ("wall_s", "steps_per_s", "versions")

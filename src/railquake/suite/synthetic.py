@@ -1,8 +1,8 @@
 r"""How the built-in suite of synthetic motions was made; its table is data beside this module.
 
 The stochastic model of `railquake.inputs.ground_motion.synthetic` gives motions of one spectral
-shape with little scatter.  Real records of one hazard differ in frequency content and duration as well:
-here the model's parameters differ from motion to motion.
+shape with little scatter.  Real records of one hazard differ in frequency content and duration as
+well: here the model's parameters differ from motion to motion.
 
 1. `POOL` candidates: parameters from `SMALLEST` to `LARGEST`, spread evenly in their logarithms
    by a Halton sequence (no random numbers), the place in the sequence being the seed of the noise.
