@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import os
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from railquake.errors import InputError
-from railquake.physics.contact import hertz_table
-from railquake.physics.kernel import SCALAR, bind, cache_folder, source_hash
-from railquake.physics.profiles import FIELDS, Axis, Geometry, axis_nodes, fill_table
+from railquake.march.compiler import SCALAR, bind, cache_folder, source_hash
+from railquake.memory import Bounded
+from railquake.physics.contact_table import FIELDS, Axis, axis_nodes, fill_table
+from railquake.physics.hertz import hertz_table
+from railquake.physics.profiles import Geometry
 
 if TYPE_CHECKING:
     from railquake.inputs.profile import Profile
@@ -144,24 +145,15 @@ def with_table(geometry: Geometry) -> Geometry:
     for part in geometry:
         digest.update(np.ascontiguousarray(part).tobytes())
     digest.update(repr((SHIFT_AXIS, ROLL_AXIS, FIELDS)).encode())
-    return geometry._replace(table=_table(digest.hexdigest(), _Held(geometry)))
+    key = digest.hexdigest()
+    return geometry._replace(table=_TABLES.get(key, lambda: _table(key, geometry)))
 
 
-class _Held:
-    """Lets `lru_cache` key the table by its digest alone."""
-
-    def __init__(self, geometry: Geometry) -> None:
-        self.geometry = geometry
-
-    def __hash__(self) -> int:
-        return 0
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Held)
+_TABLES: Bounded[str, Array] = Bounded(8)
 
 
-@lru_cache(maxsize=8)
-def _table(digest: str, held: _Held) -> Array:
+def _table(digest: str, geometry: Geometry) -> Array:
+    """The table from the cache on disk, or made now and kept there."""
     path = cache_folder() / "tables" / f"{digest[:32]}.npy"
     shifts, rolls = axis_nodes(SHIFT_AXIS), axis_nodes(ROLL_AXIS)
     size = len(shifts) * len(rolls) * 2 * FIELDS
@@ -172,7 +164,7 @@ def _table(digest: str, held: _Held) -> Array:
     except (OSError, ValueError):
         pass  # absent or damaged: made again
     table = np.empty(size)
-    bind(fill_table, SCALAR).call(shifts, rolls, held.geometry, table)
+    bind(fill_table, SCALAR).call(shifts, rolls, geometry, table)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_name(f"{path.name}.{os.getpid()}.part")

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.assembly.statics import fastest_rate
-from railquake.physics.vehicle import element_matrix, element_row, lateral_block
+from railquake.assembly.stability import fastest_rate
+from railquake.march.order import lateral_block
+from railquake.physics.suspension import element_matrix, element_row
 
 if TYPE_CHECKING:
     from railquake.inputs.vehicle import Vehicle

@@ -16,16 +16,62 @@ In a decoupled run the contact's work on the moving track is input and no part o
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
-import numpy as np
+__all__ = [
+    "EnergyAudit",
+    "Works",
+    "contact_residual",
+    "kinetic_and_elastic",
+    "whole_residual",
+]
 
-from railquake.physics import constant, state
-from railquake.physics.vehicle import unpacked
 
-__all__ = ["EnergyAudit", "audit"]
+class Works(NamedTuple):
+    """What has been added up during a run, J; see `EnergyAudit`."""
 
-Array = np.ndarray[Any, np.dtype[np.float64]]
+    ground: float
+    gravity: float
+    hinge: float
+    rayleigh: float
+    dashpots: float
+    contact_vehicle: float
+    contact_track: float
+    impact: float
+    creep: float
+    spin: float
+
+
+def kinetic_and_elastic(x: float, v: float, force: float, inverse_mass: float) -> float:
+    """Energy of one degree of freedom that ``force`` = (K x)_i holds, J; added up over all."""
+    return 0.5 * (x * force + v * v / inverse_mass)
+
+
+def whole_residual(works: Works, kinetic: float, elastic: float, reaction: float) -> float:
+    """What is left of the whole balance; ``reaction`` is 1 where the train acts on the pier."""
+    applied = works.contact_vehicle + reaction * works.contact_track
+    return (
+        works.ground
+        + works.gravity
+        - kinetic
+        - elastic
+        - works.hinge
+        - works.rayleigh
+        - works.dashpots
+        + applied
+    )
+
+
+def contact_residual(works: Works, hertz: float) -> float:
+    """What is left of the contact's balance; positive is loss, negative is gain."""
+    return (
+        -works.contact_vehicle
+        - works.contact_track
+        - hertz
+        - works.impact
+        - works.creep
+        + works.spin
+    )
 
 
 @dataclass(frozen=True)
@@ -80,89 +126,3 @@ class EnergyAudit:
     def contact_relative(self) -> float:
         """Contact balance's residual over what impact and creep lose."""
         return self.contact_residual / max(self.impact + self.creep, 1e-9)
-
-
-def audit(start: Array, end: Array, constants: Array) -> EnergyAudit:
-    """Both balances of one run.
-
-    Parameters
-    ----------
-    start, end : array, shape (state rows, 1)
-    constants : array, shape (constant rows, 1)
-
-    Returns
-    -------
-    EnergyAudit
-    """
-    first, last, q = start[:, 0], end[:, 0], constants[:, 0]
-    dofs = (len(first) - state.VEHICLE) // state.VEHICLE_BLOCKS
-    pier_mass = q[constant.M_U : constant.M_U + 3]
-    column = unpacked(q[constant.K : constant.K + 6])
-    block = constant.VEHICLE + dofs // 3
-    inverse_mass = q[block : block + dofs]
-    entries = dofs * (dofs + 1) // 2
-    suspension = unpacked(q[block + dofs : block + dofs + entries])
-
-    def stored(s: Array) -> tuple[float, float]:
-        x, v = s[state.U : state.U + 3], s[state.U_V : state.U_V + 3]
-        moves = q[constant.PIER_LOAD] > 0.0
-        kinetic = 0.5 * float(v @ (pier_mass * v)) if moves else 0.0
-        elastic = 0.5 * float(x @ column @ x) if moves else 0.0
-        x = s[state.VEHICLE : state.VEHICLE + dofs]
-        v = s[state.VEHICLE + dofs : state.VEHICLE + 2 * dofs]
-        kinetic += 0.5 * float(v @ (v / inverse_mass))
-        elastic += 0.5 * float(x @ suspension @ x)
-        return kinetic, elastic
-
-    kinetic_start, elastic_start = stored(first)
-    kinetic_end, elastic_end = stored(last)
-    # a vehicle that has left the model took its kinetic energy along
-    gone = 0.0
-    if last[state.ON_TRACK] == 0.0:
-        x = last[state.VEHICLE : state.VEHICLE + dofs]
-        gone = float(last[state.VEHICLE_ENERGY]) - 0.5 * float(x @ suspension @ x)
-    kinetic = kinetic_end - kinetic_start + gone
-    elastic = elastic_end - elastic_start
-    hertz = float(last[state.HERTZ_ENERGY] + last[state.HERTZ_LEFT] - first[state.HERTZ_ENERGY])
-    total: dict[str, float] = {
-        name: float(last[row])
-        for name, row in (
-            ("ground", state.WORK_GROUND),
-            ("gravity", state.WORK_GRAVITY),
-            ("hinge", state.HINGE_ENERGY),
-            ("rayleigh", state.LOST_RAYLEIGH),
-            ("dashpots", state.LOST_DASHPOTS),
-            ("contact_vehicle", state.WORK_VEHICLE),
-            ("contact_track", state.WORK_TRACK),
-            ("impact", state.LOST_IMPACT),
-            ("creep", state.LOST_CREEP),
-            ("spin", state.SPIN_INPUT),
-        )
-    }
-    applied = total["contact_vehicle"] + float(q[constant.REACTION]) * total["contact_track"]
-    whole = (
-        total["ground"]
-        + total["gravity"]
-        - kinetic
-        - elastic
-        - total["hinge"]
-        - total["rayleigh"]
-        - total["dashpots"]
-        + applied
-    )
-    contact = (
-        -total["contact_vehicle"]
-        - total["contact_track"]
-        - hertz
-        - total["impact"]
-        - total["creep"]
-        + total["spin"]
-    )
-    return EnergyAudit(
-        kinetic=kinetic,
-        elastic=elastic,
-        hertz=hertz,
-        whole_residual=whole,
-        contact_residual=contact,
-        **total,
-    )

@@ -1,4 +1,4 @@
-"""Where wheel and rail touch: the grid method (Eq. 4 of the paper) and a table made from it.
+"""Where wheel and rail touch: the grid method (Eq. 4 of the paper).
 
 Everything here is for the right-hand wheel, in track axes: y to the right (outward), z down,
 origin midway between the rail crowns.  The left-hand wheel is its mirror image, (Y, psi) ->
@@ -26,18 +26,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from railquake.physics.contact import hertz_lookup
-from railquake.physics.elementary import floor_of
+from railquake.physics.hertz import hertz_lookup
 
 __all__ = [
-    "FIELDS",
-    "Axis",
+    "POSITIVE",
+    "Extremum",
     "Geometry",
-    "axis_cell",
-    "axis_constants",
-    "axis_nodes",
-    "fill_table",
+    "Patch",
+    "cubic",
     "hermite",
+    "hermite_coefficients",
     "rail_at",
     "zone_contact",
     "zone_extremum",
@@ -45,8 +43,6 @@ __all__ = [
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-# Fields of one zone at one node of the table.
-FIELDS = 7  # G, dG/dY, dG/dpsi, height of the contact point, K, f22/delta, f23/(delta^1.5 r)
 # An index masked with this is seen to be positive, so that no Python-style wrap-around from the
 # array's end is compiled for it.
 POSITIVE = 0x7FFFFFFF
@@ -61,8 +57,7 @@ class Geometry(NamedTuple):
     lateral place, height below the axle, their derivatives by the point's number, curvature
     (convex positive).  Points before ``flange_points`` belong to the flange zone.  ``rail_*`` are
     evenly spaced by ``rail_step`` from ``rail_start`` in track axes; ``rail_slope`` is dz/dy.
-    ``table`` holds, for each node of relative roll and shift, `FIELDS` numbers for the tread and
-    for the flange; the axes are described by ``shift_axis`` and ``roll_axis`` (see `axis_cell`).
+    ``table`` is that of `contact_table`, with ``shift_nodes`` nodes of the shift.
     """
 
     wheel_y: Array
@@ -84,60 +79,29 @@ class Geometry(NamedTuple):
     shift_nodes: int
 
 
-class Axis(NamedTuple):
-    """A table axis: evenly spaced finely within +-fine, coarsely beyond up to +-end."""
+class Extremum(NamedTuple):
+    """Smallest gap of one zone of a wheel, and the geometry of the contact there."""
 
-    fine: float
-    fine_step: float
-    coarse_step: float
-    end: float
-
-
-def axis_nodes(axis: Axis) -> Array:
-    """Nodes of the axis, from -end to +end."""
-    half = round((axis.end - axis.fine) / axis.coarse_step)
-    inner = round(2.0 * axis.fine / axis.fine_step)
-    left = -axis.end + axis.coarse_step * np.arange(half)
-    middle = -axis.fine + axis.fine_step * np.arange(inner)
-    right = axis.fine + axis.coarse_step * np.arange(half + 1)
-    return np.concatenate([left, middle, right])
+    gap: float  # G, with the wheelset's centre at Z = 0, m
+    slope: float  # rail slope there, dG/dY = tan(gamma)
+    gap_psi: float  # dG/dpsi, m
+    place: float  # lateral place of the contact point in track coordinates, outward, m
+    rail_z: float  # height of the contact point in track axes, m
+    lateral: float  # relative curvature A, 1/m
+    rolling: float  # relative curvature B, 1/m
+    radius: float  # local rolling radius, m
 
 
-def axis_constants(axis: Axis) -> tuple[float, float, float, float, float, float]:
-    """What `axis_cell` needs: fine, end, cells per unit (fine, coarse), coarse and inner cells."""
-    return (
-        axis.fine,
-        axis.end,
-        1.0 / axis.fine_step,
-        1.0 / axis.coarse_step,
-        float(round((axis.end - axis.fine) / axis.coarse_step)),
-        float(round(2.0 * axis.fine / axis.fine_step)),
-    )
+class Patch(NamedTuple):
+    """Smallest gap of one zone of a wheel, and what the forces there need."""
 
-
-def axis_cell(
-    x: float,
-    fine: float,
-    end: float,
-    fine_rate: float,
-    coarse_rate: float,
-    coarse_cells: float,
-    inner_cells: float,
-) -> tuple[float, float, float]:
-    """Cell of x on an `Axis`: number of its left node, place in the cell (0 to 1), cells per unit.
-
-    Beyond the ends x is held at the end.
-    """
-    bounded = min(max(x, -end), end)
-    inside = abs(bounded) < fine
-    right = bounded >= fine
-    rate = fine_rate if inside else coarse_rate
-    origin = -fine if inside else (fine if right else -end)
-    first = coarse_cells if inside else (coarse_cells + inner_cells if right else 0.0)
-    cells = inner_cells if inside else coarse_cells
-    place = (bounded - origin) * rate
-    cell = min(max(floor_of(place), 0.0), cells - 1.0)
-    return first + cell, place - cell, rate
+    gap: float  # G, with the wheelset's centre at Z = 0, m
+    slope: float  # rail slope there, dG/dY = tan(gamma)
+    gap_psi: float  # dG/dpsi, m
+    rail_z: float  # height of the contact point in track axes, m
+    stiffness: float  # K, N/m^1.5
+    creep: float  # f22/delta, N/m
+    spin: float  # f23/(delta^1.5 r), r the local rolling radius
 
 
 def hermite_coefficients(
@@ -174,7 +138,7 @@ def rail_at(
 
 def zone_extremum(
     shift: float, psi: float, first: int, last: int, geometry: Geometry
-) -> tuple[float, float, float, float, float, float, float, float]:
+) -> Extremum:
     """Smallest gap of one zone of the right-hand wheel, and the geometry of the contact there.
 
     Parameters
@@ -187,20 +151,7 @@ def zone_extremum(
 
     Returns
     -------
-    G : float
-        Gap with the wheelset's centre at Z = 0, m.
-    tan_gamma : float
-        Rail slope there, dG/dY.
-    gap_psi : float
-        dG/dpsi, m.
-    place : float
-        Lateral place of the contact point in track coordinates, outward, m.
-    rail_z : float
-        Height of the contact point in track axes, m.
-    A, B : float
-        Relative curvatures, lateral and along the rolling direction, 1/m.
-    radius : float
-        Local rolling radius, m.
+    Extremum
 
     Notes
     -----
@@ -249,41 +200,26 @@ def zone_extremum(
     lateral = max(0.5 * (geometry.wheel_curvature[near] + rail_curvature), MIN_CURVATURE)
     rolling = 0.5 * cos_from_axle / radius
     gap_psi = -(y - shift) - slope * (height - gap)
-    return gap, slope, gap_psi, y, height, lateral, rolling, radius
+    return Extremum(gap, slope, gap_psi, y, height, lateral, rolling, radius)
 
 
-def zone_contact(
-    shift: float, psi: float, first: int, last: int, geometry: Geometry
-) -> tuple[float, float, float, float, float, float, float]:
+def zone_contact(shift: float, psi: float, first: int, last: int, geometry: Geometry) -> Patch:
     """Smallest gap of one zone of the right-hand wheel, and what the forces there need.
 
     Parameters are those of `zone_extremum`.
-
-    Returns
-    -------
-    G : float
-        Gap with the wheelset's centre at Z = 0, m.
-    tan_gamma : float
-        Rail slope there, dG/dY.
-    gap_psi : float
-        dG/dpsi, m.
-    rail_z : float
-        Height of the contact point in track axes, m.
-    K, f22/delta, f23/(delta^1.5 r) : float
-        See `contact.hertz_lookup`; r is the local rolling radius.
     """
-    gap, slope, gap_psi, _, height, lateral, rolling, radius = zone_extremum(
-        shift, psi, first, last, geometry
-    )
+    found = zone_extremum(shift, psi, first, last, geometry)
     stiffness, f22, f23 = hertz_lookup(
-        lateral,
-        rolling,
+        found.lateral,
+        found.rolling,
         geometry.hertz_stiffness,
         geometry.hertz_area,
         geometry.hertz_creep,
         geometry.hertz_spin,
     )
-    return gap, slope, gap_psi, height, stiffness, f22, f23 / radius
+    return Patch(
+        found.gap, found.slope, found.gap_psi, found.rail_z, stiffness, f22, f23 / found.radius
+    )
 
 
 def gap_at(
@@ -311,24 +247,3 @@ def gap_at(
         y, geometry.rail_start, geometry.rail_step, geometry.rail_z, geometry.rail_slope
     )
     return height - s * sine - q * cosine, y, height, slope
-
-
-def fill_table(shifts: Array, rolls: Array, geometry: Geometry, table: Array) -> None:
-    """Fill ``table`` (one row per roll and shift, shifts fastest) by the grid method."""
-    for i in range(len(rolls)):
-        for j in range(len(shifts)):
-            base = (i * len(shifts) + j) * 2 * FIELDS
-            for zone in range(2):
-                first = geometry.flange_points if zone == 0 else 0
-                last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
-                gap, slope, gap_psi, height, stiffness, f22, f23 = zone_contact(
-                    shifts[j], rolls[i], first, last, geometry
-                )
-                place = base + zone * FIELDS
-                table[place] = gap
-                table[place + 1] = slope
-                table[place + 2] = gap_psi
-                table[place + 3] = height
-                table[place + 4] = stiffness
-                table[place + 5] = f22
-                table[place + 6] = f23

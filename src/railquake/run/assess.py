@@ -7,7 +7,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
-from railquake.physics import constant, state
+from railquake.physics import derailment
 
 if TYPE_CHECKING:
     from railquake.run.response import Response
@@ -46,6 +46,7 @@ def assess(response: Response) -> dict[str, Any]:
     """
     end = response.end[:, 0]
     q = response.system.constants[:, 0]
+    state, constant = response.system.layout.state, response.system.layout.constant
     ground = response.system.ground
     audit = response.audit
 
@@ -85,13 +86,13 @@ def assess(response: Response) -> dict[str, Any]:
         "off_rail_time_s": value(state.TIME_ONE_WHEEL),
         "detached_time_s": value(state.TIME_DETACHED),
         "uplifts": int(value(state.UPLIFTS)),
-        "flange_contact_first_s": when(state.FLANGE_CONTACT),
-        "uplift_first_s": when(state.UPLIFT),
+        "flange_contact_first_s": when(derailment.FLANGE_CONTACT),
+        "uplift_first_s": when(derailment.UPLIFT),
         "uplift_last_end_s": uplift_end if uplift_end >= 0.0 else None,
-        "onset_first_s": when(state.ONSET),
-        "flange_over_first_s": when(state.FLANGE_OVER),
-        "derailed_s": when(state.DERAILED),
-        "overturned_s": when(state.OVERTURNED),
+        "onset_first_s": when(derailment.ONSET),
+        "flange_over_first_s": when(derailment.FLANGE_OVER),
+        "derailed_s": when(derailment.DERAILED),
+        "overturned_s": when(derailment.OVERTURNED),
         "energy_residual": audit.whole_relative,
         "contact_energy_residual": audit.contact_relative,
         "energy_dissipated_j": audit.dissipated,

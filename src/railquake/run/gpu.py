@@ -8,19 +8,19 @@ with the number of scenarios.
 from __future__ import annotations
 
 import hashlib
-from collections import OrderedDict
 from dataclasses import dataclass, replace
-from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from railquake.errors import InputError
-from railquake.physics.kernel import CUDA, copy_to_device, device_stream, missing_for_cuda
+from railquake.march.compiler import CUDA, copy_to_device, device_stream, missing_for_cuda
+from railquake.memory import Bounded
+
+from railquake.physics.profiles import Geometry
 
 if TYPE_CHECKING:
     from railquake.assembly import System
-    from railquake.physics.profiles import Geometry
 
 __all__ = ["DeviceLanes", "require_device", "require_known"]
 
@@ -82,7 +82,8 @@ class DeviceLanes:
         self.constants_changed = True
         self.states = np.zeros((0, len(system.start)))
         self.constants = np.zeros((0, len(system.constants)))
-        self.first, self.done, self.frames = np.zeros((3, 0), dtype=np.int64)
+        self.frames_row = system.layout.state.FRAMES
+        self.first, self.frames = np.zeros((2, 0), dtype=np.int64)
         self._widen(FIRST_LANES)
 
     def _widen(self, lanes: int) -> None:
@@ -93,11 +94,10 @@ class DeviceLanes:
             return np.concatenate([array, more])
 
         self.states, self.constants = wider(self.states), wider(self.constants)
-        self.first, self.done = wider(self.first), wider(self.done)
-        self.frames = wider(self.frames)
+        self.first, self.frames = wider(self.first), wider(self.frames)
         self.on_device = [
             copy_to_device(array, self.stream)
-            for array in (self.states, self.constants, self.first, self.done, self.frames)
+            for array in (self.states, self.constants, self.first, self.frames)
         ]
 
     @property
@@ -114,7 +114,6 @@ class DeviceLanes:
         self.states[lane] = system.start[:, 0]
         self.constants[lane] = system.constants[:, 0]
         self.constants_changed = True
-        self.done[lane] = 0
         return replace(system, drive=motion.system.drive, ground=motion.system.ground)
 
     def release(self, lane: int) -> None:
@@ -127,13 +126,12 @@ class DeviceLanes:
         for lane, frames in left.items():
             self.frames[lane] = min(frames, CHUNK)
             self.first[lane] = self.taken[lane].first
-        states, constants, first, done, count = self.on_device
+        states, constants, first, count = self.on_device
         states.copy_to_device(self.states, self.stream)
         if self.constants_changed:
             constants.copy_to_device(self.constants, self.stream)
             self.constants_changed = False
         first.copy_to_device(self.first, self.stream)
-        done.copy_to_device(self.done, self.stream)
         count.copy_to_device(self.frames, self.stream)
         self.kernel.call(
             len(self.states),
@@ -143,17 +141,15 @@ class DeviceLanes:
             self.geometry,
             self.motions.on_device(),
             first,
-            done,
             count,
             self.refresh_steps,
         )
         states.copy_to_host(self.states, self.stream)
-        done.copy_to_host(self.done, self.stream)
         self.stream.synchronize()
 
     def frames_done(self, lane: int) -> int:
         """Frames that a lane has behind it."""
-        return int(self.done[lane])
+        return int(self.states[lane, self.frames_row])
 
     def state(self, lane: int) -> Array:
         """State of a lane, shape (state rows, 1)."""
@@ -232,25 +228,21 @@ class _Motions:
         return self.copy
 
 
-_GEOMETRIES: OrderedDict[int, tuple[Geometry, Geometry]] = OrderedDict()
-_GEOMETRIES_LOCK = Lock()
+_GEOMETRIES: Bounded[int, tuple[Geometry, Geometry]] = Bounded(GEOMETRIES)
 
 
 def _on_device(geometry: Geometry, stream: Any) -> Geometry:
     """Profiles and contact table on the device, for all batches that have them."""
-    key = id(geometry.table)  # not used again while the table is kept here
-    with _GEOMETRIES_LOCK:
-        if key in _GEOMETRIES:
-            _GEOMETRIES.move_to_end(key)
-            return _GEOMETRIES[key][1]
+
+    def copied() -> tuple[Geometry, Geometry]:
         arrays = {
             name: copy_to_device(value, stream)
             for name, value in geometry._asdict().items()
             if isinstance(value, np.ndarray)
         }
-        copied = geometry._replace(**arrays)
+        copy = geometry._replace(**arrays)
         stream.synchronize()
-        _GEOMETRIES[key] = geometry, copied
-        if len(_GEOMETRIES) > GEOMETRIES:
-            _GEOMETRIES.popitem(last=False)
-        return copied
+        return geometry, copy
+
+    # an identity that is not used again while the table is kept here
+    return _GEOMETRIES.get(id(geometry.table), copied)[1]

@@ -20,10 +20,9 @@ import numpy as np
 
 from railquake.assembly import System, assemble
 from railquake.errors import InputError, on_one_line
-from railquake.physics import state
-from railquake.physics.energy import audit
-from railquake.physics.kernel import lockstep_target
+from railquake.march.compiler import lockstep_target
 from railquake.run.assess import assess
+from railquake.run.audit import audit
 from railquake.run.gpu import DeviceLanes, require_device, require_known
 from railquake.run.response import Response
 from railquake.run.simulate import COMPILING, settled, simulate
@@ -243,7 +242,7 @@ class _Abreast:
         self.compiling = None if self.kernel.is_cached else COMPILING
         self.geometry = system.geometry
         self.idle = system.start.copy()
-        self.idle[state.ON_TRACK] = 0.0
+        self.idle[system.layout.state.ON_TRACK] = 0.0
         self.states = np.repeat(self.idle, lanes, axis=1)
         self.constants = np.repeat(system.constants, lanes, axis=1)
         self.slot = 0  # rows of the drive kept for each lane
@@ -284,9 +283,7 @@ class _Abreast:
             self.constants,
             self.geometry,
             self.drive,
-            self.first,
-            self.stride,
-            self.done,
+            (self.first, self.stride),
             min(CHUNK, *left.values()) if left else 0,
             self.most,
             self.refresh_steps,
@@ -374,12 +371,10 @@ def run_here(
 
 def group_of(system: System) -> Any:
     """What scenarios must share to go abreast; hashable."""
-    laws = tuple(sorted((a.__qualname__, b.__qualname__) for a, b in system.laws.items()))
     # the batch keeps the table alive, so its identity is not used again
     return (
-        laws,
-        system.vehicle.mass.shape,
-        system.vehicle.block,
+        tuple(system.choices.items()),
+        system.layout.key,
         system.dt,
         system.frame_steps,
         system.substeps,
@@ -441,7 +436,8 @@ class _Batch:
             job.march_s += share
             state_now = self.lanes.state(lane)
             done = self.lanes.frames_done(lane)
-            if state_now[state.DIVERGED, 0] > 0.0 or done >= job.system.frames:
+            diverged = state_now[job.system.layout.state.DIVERGED, 0] > 0.0
+            if diverged or done >= job.system.frames:
                 rows.append((job.index, _row(job, state_now.copy(), done)))
                 del self.jobs[lane]
                 self.lanes.release(lane)
@@ -469,7 +465,7 @@ def _row(job: _Job, end: np.ndarray[Any, np.dtype[np.float64]], frames: int) -> 
                 system=system,
                 end=end,
                 frames=np.empty((frames + 1, 0)),
-                audit=audit(system.start, end, system.constants),
+                audit=audit(system, end),
                 wall_s=time.perf_counter() - job.begin,
                 march_s=job.march_s,
                 time_step=job.choice,

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from railquake.assembly import System, assemble
-from railquake.physics import state
-from railquake.physics.energy import audit
-from railquake.physics.kernel import SCALAR, Target
+from railquake.march.compiler import SCALAR, Target
 from railquake.run.assess import assess
-from railquake.run.response import Response, channels
+from railquake.run.audit import audit
+from railquake.physics.derailment import DERAILED, OVERTURNED
+from railquake.run.response import Channel, Response, channels
 from railquake.run.time_step import TimeStep, search_time_step
 
 if TYPE_CHECKING:
@@ -61,34 +61,35 @@ def simulate(
         scenario, choice = settled(scenario, notify)
         system = assemble(scenario)
     kernel = system.kernel(target)
-    rows = np.array([row for _, row, _, _ in channels(system.vehicle.bodies)])
+    kept = channels(system)
+    rows = np.array([channel.row for channel in kept])
     end = system.start.copy()
     frames = np.empty((system.frames + 1, len(rows)))
     frames[0] = end[rows, 0]
     if not kernel.is_cached and notify is not None:
         notify(COMPILING)
     # no frames: compiles or loads the kernel, so that the march is timed without it
-    kernel.call(end, system.constants, system.geometry, system.drive, 0, 0, rows, frames)
+    kernel.call(end, system.constants, system.geometry, system.drive, 0, rows, frames)
     march = time.perf_counter()
     done = 0
     while done < system.frames:
         count = min(CHUNK, system.frames - done)
         done += kernel.call(
-            end, system.constants, system.geometry, system.drive, done, count, rows, frames
+            end, system.constants, system.geometry, system.drive, count, rows, frames
         )
         if progress is not None:
             progress(done, system.frames)
-        if end[state.DIVERGED, 0] > 0.0:
+        if end[system.layout.state.DIVERGED, 0] > 0.0:
             frames = frames[: done + 1]
             break
     now = time.perf_counter()
-    _absolute(frames, rows)
-    _forget_train(frames, rows, end, system)
+    _absolute(frames, kept)
+    _forget_train(frames, kept, end, system)
     return Response(
         system=system,
         end=end,
         frames=frames,
-        audit=audit(system.start, end, system.constants),
+        audit=audit(system, end),
         wall_s=now - begin,
         march_s=now - march,
         time_step=choice,
@@ -110,22 +111,23 @@ def settled(
     return choice.settled(scenario), choice
 
 
-def _absolute(frames: np.ndarray, rows: np.ndarray) -> None:
-    """Turn the kernel's own quantities into those that a history shows."""
-    column = {int(row): k for k, row in enumerate(rows)}
-    # the pier's acceleration is marched relative to the ground
-    frames[:, column[state.U_A]] += frames[:, column[state.GROUND]]
+def _absolute(frames: np.ndarray, kept: Sequence[Channel]) -> None:
+    """Turn the march's own quantities into those that a history shows."""
+    column = {channel.name: k for k, channel in enumerate(kept)}
+    # the structure's acceleration is marched relative to the ground
+    frames[:, column["bridge_acceleration_m_s2"]] += frames[:, column["ground_acceleration_m_s2"]]
     # the contact forces are kept as they act on the wheelset
-    frames[:, column[state.FORCE_Y]] *= -1.0
+    frames[:, column["lateral_force_n"]] *= -1.0
 
 
-def _forget_train(frames: np.ndarray, rows: np.ndarray, end: np.ndarray, system: System) -> None:
+def _forget_train(
+    frames: np.ndarray, kept: Sequence[Channel], end: np.ndarray, system: System
+) -> None:
     """NaN for the train's motion once it has left the track."""
-    times = end[state.FIRST_TIME + np.array([state.DERAILED, state.OVERTURNED]), 0]
+    state = system.layout.state
+    times = end[state.FIRST_TIME + np.array([DERAILED, OVERTURNED]), 0]
     left = times[times >= 0.0]
     if end[state.ON_TRACK, 0] > 0.0 or left.size == 0:
         return
     last = round(float(left.min()) / (system.dt * system.frame_steps))
-    train = (rows >= state.VEHICLE) | np.isin(rows, (state.SHIFT, state.HEIGHT, state.ROLL))
-    penetrations = (rows >= state.PATCH) & (rows < state.PATCHES_END)
-    frames[last + 1 :, train | penetrations] = np.nan
+    frames[last + 1 :, [channel.train for channel in kept]] = np.nan

@@ -1,38 +1,18 @@
-"""Tangential contact force: Kalker's linear theory and its saturation (Eq. 8 of the paper).
+"""Creepage coefficients of Kalker's linear theory.
 
-In the section there is no longitudinal motion, so F_x = 0 and ::
-
-    F_y   = -f22 xi_y - f23 xi_sp                     (linear, Eq. 8)
-    f22   = G a b C22(a/b, nu)        f23 = G (a b)^1.5 C23(a/b, nu)
-    xi_y  = v_t / V        xi_sp = sin(contact angle from the axle) / rolling radius
-
-v_t is the lateral velocity of the wheel relative to the rail in the contact plane.  Friction
-bounds the force at mu N; a *law* says how it gets there.  Each law returns the factor by which the
-linear force is reduced, as a function of tau = abs(linear force) / (mu N); all have slope 1 at
-tau = 0, so that Kalker's initial slope is kept exactly.  (The relative roll rate adds nothing to
-the spin: its axis x lies in the contact plane, so it has no part about the contact normal.)
-
-Sources: Kalker (1990), table E.3; Shen, Hedrick and Elkins (1983); Carter (1926); Polach (1999).
+Source: Kalker (1990), Three-Dimensional Elastic Bodies in Rolling Contact, table E.3.
 """
 
-import math
 from typing import Any
 
 import numpy as np
 
-__all__ = [
-    "KALKER_A_OVER_B",
-    "kalker_coefficients",
-    "reduction_carter",
-    "reduction_coulomb",
-    "reduction_polach",
-    "reduction_shen_hedrick_elkins",
-]
+__all__ = ["KALKER_A_OVER_B", "kalker_coefficients"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-# Kalker (1990), Three-Dimensional Elastic Bodies in Rolling Contact, table E.3: C11, C22, C23 at
-# Poisson's ratio 0, 0.25 and 0.5.  First a/b = 0.1 ... 1, then b/a = 1 ... 0.1 (so a/b rises).
+# C11, C22, C23 at Poisson's ratio 0, 0.25 and 0.5.  First a/b = 0.1 ... 1, then b/a = 1 ... 0.1
+# (so a/b rises).
 KALKER_A_OVER_B: Array = np.concatenate(
     [np.arange(1, 11) / 10.0, 1.0 / (np.arange(9, 0, -1) / 10.0)]
 )
@@ -90,35 +70,3 @@ def kalker_coefficients(a_over_b: Array, poisson: float) -> tuple[Array, Array, 
     )
     c11, c22, c23 = (np.interp(place, knots, table @ lagrange) for table in (_C11, _C22, _C23))
     return c11, c22, c23
-
-
-def reduction_shen_hedrick_elkins(linear: float, limit: float) -> float:
-    """Shen, Hedrick, Elkins (1983): F = mu N (tau - tau^2/3 + tau^3/27), sliding from tau = 3."""
-    size = abs(linear)
-    tau = size / max(limit, 1e-30)
-    partial = 1.0 - tau / 3.0 + tau * tau / 27.0
-    return partial if tau < 3.0 else limit / max(size, 1e-30)
-
-
-def reduction_coulomb(linear: float, limit: float) -> float:
-    """Kalker's linear force cut off at mu N."""
-    size = abs(linear)
-    return 1.0 if size < limit else limit / max(size, 1e-30)
-
-
-def reduction_carter(linear: float, limit: float) -> float:
-    """Carter's (1926) law with Kalker's slope: F = mu N (tau - tau^2/4), sliding from tau = 2."""
-    size = abs(linear)
-    tau = size / max(limit, 1e-30)
-    return 1.0 - tau / 4.0 if tau < 2.0 else limit / max(size, 1e-30)
-
-
-def reduction_polach(linear: float, limit: float) -> float:
-    """Polach (1999): F = (2 mu N / pi) (eps/(1 + eps^2) + atan eps), eps = pi tau / 4.
-
-    Polach's separate term for spin is replaced by the linear force, which holds spin's part too.
-    """
-    size = abs(linear)
-    tau = size / max(limit, 1e-30)
-    eps = 0.25 * math.pi * tau
-    return (0.5 * (eps / (1.0 + eps * eps) + math.atan(eps)) / eps) if eps > 1e-9 else 1.0

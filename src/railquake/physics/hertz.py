@@ -1,4 +1,4 @@
-"""Normal contact: Hertz stiffness and the Hunt-Crossley force (Eqs. 5 to 7 of the paper).
+"""Hertz' stiffness of wheel on rail (Eq. 6 of the paper), and what else its ellipse decides.
 
 Hertz (1882), with the relative curvatures A (lateral) and B (rolling direction) ::
 
@@ -10,14 +10,6 @@ where r is the *dimensionless* approach coefficient of Hertz' theory, a function
 cos(theta) = (B - A)/(A + B) (the paper calls it a radius of curvature; r = 1 for A = B).  With the
 semi-axes' coefficients m (along the rolling direction) and n, the ellipse has
 a b = delta m n / (r (A + B)).  Concave radii are negative.
-
-Hunt and Crossley (1975) add hysteresis ::
-
-    N = (K + chi delta') delta^1.5 >= 0      chi = alpha_r K / delta'_0              (Eqs. 5, 7)
-
-delta'_0 is the rate at the onset of this contact, frozen until it is lost, and bounded below.
-alpha_r = 3 (1 - c_r)/2 as printed; the *calibrated* choice solves
-alpha (1 + c_r) = ln((1 + alpha)/(1 - alpha c_r)), with which a free impact rebounds at exactly c_r.
 """
 
 import math
@@ -25,19 +17,16 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
+
+from railquake.physics.creep.kalker import kalker_coefficients
 
 __all__ = [
     "HertzTable",
-    "calibrated_hysteresis",
     "effective_modulus",
     "hertz_coefficients",
     "hertz_lookup",
     "hertz_table",
-    "normal_force",
-    "onset_hysteresis",
-    "printed_hysteresis",
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -110,8 +99,6 @@ HERTZ_NODES = 4097
 @cache
 def hertz_table(youngs_modulus: float, poisson_ratio: float) -> HertzTable:
     """Tabulate all that a contact needs to know of its curvatures' ratio, for one material."""
-    from railquake.physics.creep import kalker_coefficients
-
     # the ends theta = 0 and pi (line contacts) are out of reach: A and B are bounded below
     angle = np.linspace(0.0, math.pi, HERTZ_NODES).clip(1e-3, math.pi - 1e-3)
     m, n, r = hertz_coefficients(angle)
@@ -154,37 +141,3 @@ def hertz_lookup(
     f22 = ((1.0 - w) * creep[cell] + w * creep[cell + 1]) * ab
     f23 = ((1.0 - w) * spin[cell] + w * spin[cell + 1]) * ab * math.sqrt(ab)
     return k, f22, f23
-
-
-def printed_hysteresis(restitution: float) -> float:
-    """alpha_r = 3 (1 - c_r)/2 of Eq. 7."""
-    return 1.5 * (1.0 - restitution)
-
-
-def calibrated_hysteresis(restitution: float) -> float:
-    """alpha_r with which a free impact rebounds at exactly ``restitution`` (in (0, 1])."""
-    if restitution >= 1.0:
-        return 0.0
-
-    def excess(alpha: float) -> float:
-        return alpha * (1.0 + restitution) - math.log((1.0 + alpha) / (1.0 - alpha * restitution))
-
-    # alpha = 0 is the trivial root; the wanted one lies above 3 (1 - c_r)/2 and below the pole
-    return float(brentq(excess, 1.0 - restitution, (1.0 - 1e-13) / restitution, xtol=1e-15))
-
-
-def onset_hysteresis(
-    closed: bool, hysteresis: float, rate: float, alpha_r: float, rate_bound: float
-) -> float:
-    """chi/K of this contact, s/m: fixed at its onset, forgotten when it is lost."""
-    fresh = alpha_r / max(rate, rate_bound)
-    kept = hysteresis if hysteresis > 0.0 else fresh
-    return kept if closed else 0.0
-
-
-def normal_force(
-    delta: float, rate: float, stiffness: float, hysteresis: float
-) -> tuple[float, float]:
-    """Normal force (Eq. 5), never negative, and its elastic part, N."""
-    elastic = stiffness * delta * math.sqrt(delta)
-    return max(elastic * (1.0 + hysteresis * rate), 0.0), elastic

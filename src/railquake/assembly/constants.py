@@ -1,0 +1,138 @@
+"""The constants of a run by their rows (`rows_constant`)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from railquake.assembly.geometry import ROLL_AXIS, SHIFT_AXIS
+from railquake.errors import InputError
+from railquake.inputs.profile import flange_tip
+from railquake.march.order import kernel_order
+from railquake.march.packed import unpacked, upper_triangle
+from railquake.physics import newmark
+from railquake.physics.contact_table import axis_cells
+from railquake.physics.derailment import ROLL_LIMIT, SHIFT_LIMIT
+from railquake.physics.impact import RESTITUTION_LAWS
+from railquake.physics.low_pass import low_pass_coefficients
+from railquake.physics.vehicle import GRAVITY
+
+if TYPE_CHECKING:
+    from railquake.assembly.supports import Structure
+    from railquake.assembly.vehicle import VehicleMatrices
+    from railquake.inputs.scenario import Scenario
+    from railquake.inputs.solver import Solver
+    from railquake.inputs.wheelrail import WheelRail
+    from railquake.march.rows import Layout
+
+__all__ = ["constants_of", "fill_structure", "fill_substeps", "frame_steps"]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def frame_steps(solver: Solver) -> int:
+    """Time steps in a frame."""
+    return max(1, round(solver.history_step / solver.step))
+
+
+def constants_of(
+    scenario: Scenario, vehicle: VehicleMatrices, structure: Structure, layout: Layout
+) -> Array:
+    """All constants of a scenario, shape (constant rows, 1)."""
+    constant = layout.constant
+    q = np.zeros(layout.size.CONSTANT_ROWS)
+    solver = scenario.solver
+    q[constant.DT] = solver.step
+    q[constant.FRAME_STEPS] = frame_steps(solver)
+    q[constant.ZHAI_PSI] = solver.psi
+    q[constant.ZHAI_PHI] = solver.phi
+    q[constant.AXLES] = scenario.vehicle.axles
+    q[constant.VEHICLE_MASS] = scenario.vehicle.mass
+    q[constant.STATIC_WHEEL_LOAD] = static_wheel_load(vehicle)
+    _fill(q, constant.FILTER_BY, low_pass_coefficients(
+        solver.lateral_force_filter, solver.step * frame_steps(solver)
+    ))  # fmt: skip
+    _fill_vehicle(q, vehicle, layout)
+    _fill_wheelrail(q, scenario.wheelrail, scenario.vehicle.speed, layout)
+    fill_structure(q, structure, layout)
+    fill_substeps(q, 1, layout)
+    return q[:, None]
+
+
+def static_wheel_load(vehicle: VehicleMatrices) -> float:
+    """Vertical load of one side's wheels together, N."""
+    return 0.5 * float(vehicle.mass[1::3].sum()) * GRAVITY
+
+
+def _fill(q: Array, first: int, values: tuple[float, ...] | Array) -> None:
+    """A block from its first row on."""
+    q[first : first + len(values)] = values
+
+
+def _fill_vehicle(q: Array, vehicle: VehicleMatrices, layout: Layout) -> None:
+    constant = layout.constant
+    order = kernel_order(len(vehicle.mass))
+    upper = upper_triangle(len(order))
+    q[constant.GRAVITY] = GRAVITY
+    _fill(q, constant.BODY_MASS, vehicle.mass[0::3])
+    _fill(q, constant.INVERSE_MASS, 1.0 / vehicle.mass[order])
+    _fill(q, constant.STIFFNESS, vehicle.stiffness[np.ix_(order, order)][upper])
+    _fill(q, constant.DAMPING, vehicle.damping[np.ix_(order, order)][upper])
+
+
+def _fill_wheelrail(q: Array, wheelrail: WheelRail, speed: float, layout: Layout) -> None:
+    constant = layout.constant
+    alpha_r = RESTITUTION_LAWS[wheelrail.restitution_law].coefficient(wheelrail.restitution)
+    if not math.isfinite(alpha_r):
+        raise InputError(
+            f"wheelrail.restitution: {wheelrail.restitution:g} cannot be calibrated (the "
+            "hysteresis would be infinite); take a positive value or restitution_law = "
+            '"hunt-crossley"'
+        )
+    q[constant.WHEELSET_HEIGHT] = wheelrail.rolling_radius
+    q[constant.ALPHA_R] = alpha_r
+    q[constant.ONSET_BOUND] = wheelrail.onset_rate_bound
+    q[constant.FRICTION] = wheelrail.friction
+    q[constant.INVERSE_SPEED] = 1.0 / max(speed, wheelrail.speed_bound)
+    _fill(q, constant.SHIFT_AXIS, axis_cells(SHIFT_AXIS))
+    _fill(q, constant.ROLL_AXIS, axis_cells(ROLL_AXIS))
+    tip_y, tip_z = flange_tip(wheelrail.wheel_profile())
+    rail = wheelrail.rail_profile()
+    crown = rail.y[int(np.argmin(rail.z))]
+    q[constant.TIP_Y] = wheelrail.running_circle + tip_y
+    q[constant.TIP_Z] = wheelrail.rolling_radius + tip_z
+    q[constant.REFERENCE_ROLL] = wheelrail.reference_roll
+    q[constant.RAIL_CENTRE] = wheelrail.rail_half_distance(rail) + crown
+    q[constant.SHIFT_LIMIT] = SHIFT_LIMIT
+    q[constant.ROLL_LIMIT] = ROLL_LIMIT
+
+
+def fill_structure(q: Array, structure: Structure, layout: Layout) -> None:
+    """What of the structure does not depend on the time step."""
+    constant = layout.constant
+    upper = upper_triangle(structure.degrees[0])
+    _fill(q, constant.GROUND_LOAD, structure.ground_load)
+    _fill(q, constant.MASS, structure.mass)
+    _fill(q, constant.K, structure.stiffness[upper])
+    _fill(q, constant.C, structure.damping[upper])
+    _fill(q, constant.OFFSET, structure.offset)
+    q[constant.REACTION] = structure.reaction
+    _fill(q, constant.HINGE, structure.parameters)
+
+
+def fill_substeps(q: Array, substeps: int, layout: Layout) -> None:
+    """Time steps in one of structure and sprung bodies, and what of the structure depends on it."""
+    constant, size = layout.constant, layout.size
+    step = substeps * float(q[constant.DT])
+    entries = size.STRUCTURE_ENTRIES
+    effective = newmark.effective_matrix(
+        np.diag(q[constant.MASS : constant.MASS + size.STRUCTURE]),
+        unpacked(q[constant.C : constant.C + entries]),
+        unpacked(q[constant.K : constant.K + entries]),
+        step,
+    )
+    q[constant.SUBSTEPS] = substeps
+    q[constant.RATE] = 1.0 / step
+    _fill(q, constant.FLEX, np.linalg.inv(effective)[upper_triangle(size.STRUCTURE)])

@@ -1,0 +1,247 @@
+"""Kernels on the processor: how wide its vectors are, and what is compiled for them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from railquake.march.compiler.cache import source_hash
+from railquake.march.compiler.target import Target
+
+__all__ = [
+    "compile_called",
+    "compile_entry",
+    "lockstep_target",
+    "own_memory",
+    "vector_doubles",
+    "vector_instructions",
+]
+
+Law = Callable[..., Any]
+
+# Reassociation and contraction let LLVM use fused multiply-adds and vectors.  "nnan" and "ninf"
+# are left out on purpose: with them a test for a diverged state would be optimised away.
+FASTMATH = frozenset({"contract", "arcp", "nsz", "reassoc"})
+
+
+@cache
+def lockstep_target() -> Target:
+    """Target that runs scenarios abreast: one to each double of the vectors that the compiler uses.
+
+    Two such vectors to a stage are no faster: their state leaves the first-level cache.  But where
+    vectors hold two doubles only, two of them are.
+    """
+    return Target("lockstep", compiled=True, lanes=max(vector_doubles(), 4))
+
+
+@cache
+def vector_doubles() -> int:
+    """Doubles in the vectors that the compiler uses on this machine.
+
+    They may be fewer than the machine has room for: LLVM keeps to 256 bits on many processors with
+    AVX-512, where wider vectors slow the clock.  So it is asked, by a loop that it vectorises.
+    """
+    code = _loop_in_assembly()
+    return next((doubles for doubles in (8, 4, 2) if vector_instructions(code, doubles)), 1)
+
+
+def vector_instructions(code: str, doubles: int) -> int:
+    """Instructions in assembly (x86-64 or arm64) on vectors of so many doubles."""
+    return len(re.findall(VECTORS[doubles], code, re.MULTILINE))
+
+
+VECTORS = {
+    8: r"^\s+v\w+pd\b.*%zmm\d",
+    4: r"^\s+v\w+pd\b.*%ymm\d",
+    2: r"^\s+v?\w+pd\b.*%xmm\d|^\s.*\.2d\b|^\s.*\bz\d+\.d\b",  # SSE, NEON, SVE
+}
+
+_LOOP = """
+define void @thrice(double* noalias %x, i64 %n) {
+entry:
+  %some = icmp sgt i64 %n, 0
+  br i1 %some, label %loop, label %exit
+loop:
+  %i = phi i64 [0, %entry], [%next, %loop]
+  %place = getelementptr double, double* %x, i64 %i
+  %value = load double, double* %place
+  %product = fmul double %value, 3.0
+  store double %product, double* %place
+  %next = add nsw i64 %i, 1
+  %more = icmp slt i64 %next, %n
+  br i1 %more, label %loop, label %exit
+exit:
+  ret void
+}
+"""
+
+
+def _loop_in_assembly() -> str:
+    """A loop over an array of doubles as the compiler translates it for its processor."""
+    import llvmlite.binding
+    from numba.core.compiler_lock import global_compiler_lock
+    from numba.core.registry import cpu_target
+
+    with global_compiler_lock:
+        library = cpu_target.target_context.codegen().create_library("width")
+        library.add_llvm_module(llvmlite.binding.parse_assembly(_LOOP))
+        library.finalize()
+        return str(library.get_asm_str())
+
+
+def compile_entry(function: Law, folder: Path) -> Law:
+    """Compile an entry function, kept on disk in ``folder``.
+
+    Without counting references to arrays (``_nrt``): it makes none but `own_memory`, and the
+    counts would be kept in every step.
+    """
+    import numba
+
+    dispatcher = numba.njit(nogil=True, **_options())(function)
+    _keep_on_disk(dispatcher, folder)
+    entry: Law = dispatcher
+    return entry
+
+
+def _options() -> dict[str, Any]:
+    return {"error_model": "numpy", "fastmath": set(FASTMATH), "_nrt": False}
+
+
+def own_memory(rows: int, lanes: int) -> Law:
+    """Function that gives a compiled entry an array of its own, shape (rows, lanes).
+
+    It lies on the stack: its row stride is known, and that nothing else points there.
+    """
+    from llvmlite import ir
+    from numba.core import types
+    from numba.extending import intrinsic
+
+    kind = types.Array(types.float64, 2, "C")
+
+    def typed(typing_context: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            with builder.goto_entry_block():
+                place = builder.alloca(ir.ArrayType(ir.DoubleType(), rows * lanes))
+                place.align = 64
+            array = context.make_array(kind)(context, builder)
+            word = context.get_value_type(types.intp)
+            context.populate_array(
+                array,
+                data=builder.bitcast(place, ir.DoubleType().as_pointer()),
+                shape=[word(rows), word(lanes)],
+                strides=[word(8 * lanes), word(8)],
+                itemsize=word(8),
+                meminfo=None,
+            )
+            return array._getvalue()
+
+        return kind(), generate
+
+    law: Law = intrinsic(typed)
+    return law
+
+
+def compile_called(function: Law) -> Law:
+    """Compile one called function so that it dissolves into its caller."""
+    import numba
+
+    if function.__name__ in _instructions():
+        return _instructions()[function.__name__]
+
+    options = _options()
+    if "lanes" in function.__code__.co_varnames[: function.__code__.co_argcount]:
+        # loops over lanes must be seen together with the arrays' making, or they are compiled for
+        # any row stride: half as fast
+        options["inline"] = "always"
+    else:
+        options["forceinline"] = True
+    law: Law = numba.njit(**options)(function)
+    return law
+
+
+@cache
+def _instructions() -> dict[str, Law]:
+    """Compiled counterparts of `elementary.bits_of`, `float_of`, `floor_of` and `larger_of`."""
+    from llvmlite import ir
+    from numba.core import types
+    from numba.extending import intrinsic
+
+    def cast(kind: Any, result: Any) -> Law:
+        def typed(typing_context: Any, value: Any) -> Any:
+            def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+                return builder.bitcast(arguments[0], context.get_value_type(result))
+
+            return result(kind), generate
+
+        law: Law = intrinsic(typed)
+        return law
+
+    def floor_typed(typing_context: Any, value: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            name = "llvm.floor"
+            floor = builder.module.declare_intrinsic(name, [ir.DoubleType()])
+            return builder.call(floor, arguments)
+
+        return types.float64(types.float64), generate
+
+    double = ir.DoubleType()
+
+    def larger_typed(typing_context: Any, a: Any, b: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            largest = builder.module.declare_intrinsic(
+                "llvm.maxnum", [double], ir.FunctionType(double, [double, double])
+            )
+            # one instruction, whatever it gives for NaN
+            return builder.call(largest, arguments, fastmath=("nnan",))
+
+        return types.float64(types.float64, types.float64), generate
+
+    return {
+        "floor_of": intrinsic(floor_typed),
+        "larger_of": intrinsic(larger_typed),
+        "bits_of": cast(types.float64, types.int64),
+        "float_of": cast(types.int64, types.float64),
+    }
+
+
+def _keep_on_disk(dispatcher: Any, folder: Path) -> None:
+    """Give the dispatcher an on-disk cache in ``folder``, which the variant alone names."""
+    from numba.core import caching
+
+    class Locator(caching._CacheLocator):
+        def __init__(self, py_file: str) -> None:
+            self._py_file = py_file
+
+        def get_cache_path(self) -> str:
+            return str(folder)
+
+        def get_source_stamp(self) -> str:
+            return source_hash()
+
+        def get_disambiguator(self) -> None:
+            return None
+
+        @classmethod
+        def from_function(cls, py_func: Law, py_file: str) -> Locator:
+            return cls(py_file)
+
+    class Implementation(caching.CompileResultCacheImpl):
+        _locator_classes = [Locator]  # type: ignore[list-item]  # noqa: RUF012
+
+    class VariantCache(caching.FunctionCache):
+        _impl_class = Implementation
+
+        def _index_key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
+            # The stock key hashes the entry's closure and bytecode, but not the laws bound to its
+            # globals; the folder's name covers those.
+            return signature, codegen.magic_tuple()
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return  # an unwritable cache costs a compilation in each process, nothing more
+    variant: Any = VariantCache
+    dispatcher._cache = variant(dispatcher.py_func)

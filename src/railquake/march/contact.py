@@ -1,0 +1,293 @@
+"""Stages of wheel on rail: where they touch, and with what forces.
+
+Sides are numbered 0 (left) and 1 (right), zones 0 (tread) and 1 (flange).
+"""
+
+from typing import Any
+
+import numpy as np
+
+from railquake.march.packing import reader, writer
+from railquake.march.rows import constant, size, state
+from railquake.physics.contact_table import (
+    FIELDS,
+    AxisCells,
+    Polynomials,
+    axis_cell,
+    cell_polynomials,
+    patch_in_cell,
+)
+from railquake.physics.patch import Contact, WheelMotion, closing_rate, patch_forces
+from railquake.physics.profiles import POSITIVE, Geometry, Patch, zone_contact
+
+__all__ = [
+    "add_wheels",
+    "any_flange_near",
+    "clear_forces",
+    "closed_patch",
+    "every_flange_near",
+    "evaluated_patch",
+    "fetch_cells",
+    "fetch_polynomials",
+    "flange_near",
+    "locate_cells",
+    "locate_in_table",
+    "look_at_flanges",
+    "no_cells",
+    "no_polynomials",
+    "patch",
+    "patch_by_grid",
+    "patch_by_table",
+    "press_patch",
+]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+LOOK = 2e-4  # s; twice what passes at most between two looks at flanges, see `look_at_flange`
+SPARE = 1e-4  # m
+
+read_axis = reader(AxisCells)
+read_contact = reader(Contact)
+read_polynomials = reader(Polynomials)
+write_polynomials = writer(Polynomials)
+
+
+# --- where they may touch -----------------------------------------------------------------------
+
+
+def locate_cells(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
+    """Slot of the contact method: the contact table's cell for each side's (shift, roll)."""
+    raise NotImplementedError("a contact method is chosen when a kernel is bound")
+
+
+def fetch_cells(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
+    """Slot of the contact method: the polynomials of each side's cell."""
+    raise NotImplementedError("a contact method is chosen when a kernel is bound")
+
+
+def patch(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int) -> Patch:
+    """Slot of the contact method: smallest gap of a zone, and what the forces there need."""
+    raise NotImplementedError("a contact method is chosen when a kernel is bound")
+
+
+def no_cells(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
+    """No table is used."""
+
+
+def no_polynomials(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
+    """No table is used."""
+
+
+def patch_by_grid(
+    S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int
+) -> Patch:
+    """By the grid method itself."""
+    sign = 2.0 * side - 1.0
+    first = geometry.flange_points if zone == 0 else 0
+    last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
+    return zone_contact(
+        sign * S[state.SHIFT, lane], sign * S[state.ROLL, lane], first, last, geometry
+    )
+
+
+def locate_in_table(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
+    """The axes are symmetric, so the left side's cell is the mirror image of the right one's."""
+    shifts = read_axis(Q, constant.SHIFT_AXIS, lane)
+    rolls = read_axis(Q, constant.ROLL_AXIS, lane)
+    j, w, rate = axis_cell(S[state.SHIFT, lane], shifts)
+    last_j = 2.0 * shifts.coarse_cells + shifts.inner_cells - 1.0
+    i, w_roll, roll_rate = axis_cell(S[state.ROLL, lane], rolls)
+    last_i = 2.0 * rolls.coarse_cells + rolls.inner_cells - 1.0
+    left = ((last_i - i) * shift_nodes + last_j - j) * (2 * FIELDS)
+    right = (i * shift_nodes + j) * (2 * FIELDS)
+    keep_cell(S, 0, left, (1.0 - w, rate), (1.0 - w_roll, roll_rate), lane)
+    keep_cell(S, 1, right, (w, rate), (w_roll, roll_rate), lane)
+
+
+def keep_cell(
+    S: Array,
+    side: int,
+    base: float,
+    shift: tuple[float, float],
+    roll: tuple[float, float],
+    lane: int,
+) -> None:
+    """A side's cell: its first number in the table; place and cells per unit along both axes."""
+    S[state.CELL_BASE + side, lane] = base
+    S[state.CELL_SHIFT + side, lane], S[state.CELL_SHIFT_RATE + side, lane] = shift
+    S[state.CELL_ROLL + side, lane], S[state.CELL_ROLL_RATE + side, lane] = roll
+
+
+def fetch_polynomials(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
+    """When a wheel has come to another cell; it stays in one for many steps."""
+    fetch_side(S, geometry, 0, lane)
+    fetch_side(S, geometry, 1, lane)
+
+
+def fetch_side(S: Array, geometry: Geometry, side: int, lane: int) -> None:
+    """`fetch_polynomials` for one side."""
+    base = S[state.CELL_BASE + side, lane]
+    if base != S[state.CELL_HELD + side, lane]:
+        S[state.CELL_HELD + side, lane] = base
+        width = 1.0 / S[state.CELL_SHIFT_RATE + side, lane]
+        roll_width = 1.0 / S[state.CELL_ROLL_RATE + side, lane]
+        next_roll = (geometry.shift_nodes * 2 * FIELDS) & POSITIVE
+        for zone in range(2):
+            corner = (int(base) & POSITIVE) + zone * FIELDS
+            made = cell_polynomials(corner, next_roll, width, roll_width, geometry.table)
+            write_polynomials(S, polynomials_of(side, zone), made, lane)
+
+
+def polynomials_of(side: int, zone: int) -> int:
+    """First row of a patch's polynomials."""
+    return state.POLYNOMIALS + (2 * side + zone) * size.POLYNOMIAL_FIELDS
+
+
+def patch_by_table(
+    S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int
+) -> Patch:
+    """From the polynomials of the wheel's cell."""
+    return patch_in_cell(
+        read_polynomials(S, polynomials_of(side, zone), lane),
+        S[state.CELL_SHIFT + side, lane],
+        S[state.CELL_ROLL + side, lane],
+        S[state.CELL_SHIFT_RATE + side, lane],
+        S[state.CELL_ROLL_RATE + side, lane],
+    )
+
+
+# --- whether a flange may touch -----------------------------------------------------------------
+
+
+def flange_near(S: Array, side: int, lanes: int) -> bool:
+    """Slot of the engine: whether a side's flange may touch its rail before the next look."""
+    raise NotImplementedError("an engine is chosen when a kernel is bound")
+
+
+def any_flange_near(S: Array, side: int, lanes: int) -> bool:
+    """Whether it may in any lane."""
+    nearest = 0.0
+    for lane in range(lanes):
+        nearest = max(nearest, S[state.NEAR + side, lane])
+    return nearest > 0.0
+
+
+def every_flange_near(S: Array, side: int, lanes: int) -> bool:
+    """One scenario looks at every flange in every step."""
+    return True
+
+
+def look_at_flanges(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
+    """Now and then, where many run abreast: how near the flanges are to their rails."""
+    look_at_flange(S, Q, geometry, 0, lane)
+    look_at_flange(S, Q, geometry, 1, lane)
+
+
+def look_at_flange(S: Array, Q: Array, geometry: Geometry, side: int, lane: int) -> None:
+    """`look_at_flanges` for one side.
+
+    A flange that would not reach its rail within `LOOK` (and a time step) if it went on as it does,
+    with `SPARE` left for what it is hurried, bears nothing until it is looked at again.
+    """
+    found = patch(S, Q, geometry, side, 1, lane)
+    motion = motion_of_side(S, side, lane)
+    penetration = motion.height - found.gap
+    horizon = LOOK + Q[constant.DT, lane]
+    reaches = penetration + max(closing_rate(found, motion), 0.0) * horizon + SPARE > 0.0
+    S[state.NEAR + side, lane] = S[state.ON_TRACK, lane] if reaches else 0.0
+
+
+# --- forces -------------------------------------------------------------------------------------
+
+
+def clear_forces(S: Array, lane: int) -> None:
+    """Nothing of what the patches will add up."""
+    S[state.FORCE_PSI, lane] = 0.0
+    S[state.HERTZ_ENERGY, lane] = 0.0
+    for k in range(3):
+        S[state.CONTACT_POWER + k, lane] = 0.0
+    for side in range(2):
+        S[state.LOAD + side, lane] = 0.0
+        S[state.LATERAL + side, lane] = 0.0
+
+
+def motion_of_side(S: Array, side: int, lane: int) -> WheelMotion:
+    """The wheelset's motion seen from the wheel of a side."""
+    sign = 2.0 * side - 1.0
+    return WheelMotion(
+        S[state.HEIGHT, lane],
+        sign * S[state.SHIFT_V, lane],
+        S[state.HEIGHT_V, lane],
+        sign * S[state.ROLL_V, lane],
+        sign * S[state.ROLL_SIN, lane],
+        S[state.ROLL_COS, lane],
+    )
+
+
+def press_patch(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int) -> None:
+    """Slot of the engine: contact forces of a patch, added up for the wheelset."""
+    raise NotImplementedError("an engine is chosen when a kernel is bound")
+
+
+def evaluated_patch(
+    S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int
+) -> None:
+    """Many abreast evaluate open patches all the same."""
+    add_patch(S, Q, side, zone, patch(S, Q, geometry, side, zone, lane), lane)
+
+
+def closed_patch(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int) -> None:
+    """For one scenario an open patch costs nothing."""
+    found = patch(S, Q, geometry, side, zone, lane)
+    if S[state.HEIGHT, lane] > found.gap:
+        add_patch(S, Q, side, zone, found, lane)
+    else:
+        S[state.PATCH_PENETRATION + 2 * side + zone, lane] = S[state.HEIGHT, lane] - found.gap
+        S[state.PATCH_HYSTERESIS + 2 * side + zone, lane] = 0.0
+
+
+def add_patch(S: Array, Q: Array, side: int, zone: int, found: Patch, lane: int) -> None:
+    """Forces of a patch whose gap and contact data are known."""
+    sign = 2.0 * side - 1.0
+    number = 2 * side + zone
+    motion = motion_of_side(S, side, lane)
+    penetration = motion.height - found.gap
+    if zone == 1:
+        penetration *= S[state.NEAR + side, lane]
+    forces = patch_forces(
+        penetration,
+        found,
+        motion,
+        S[state.PATCH_HYSTERESIS + number, lane],
+        read_contact(Q, constant.CONTACT, lane),
+    )
+    S[state.PATCH_PENETRATION + number, lane] = penetration
+    S[state.PATCH_HYSTERESIS + number, lane] = forces.hysteresis
+    S[state.FORCE_PSI, lane] += sign * forces.psi
+    S[state.HERTZ_ENERGY, lane] += forces.energy
+    S[state.IMPACT_POWER, lane] += forces.impact
+    S[state.CREEP_POWER, lane] += forces.creep
+    S[state.SPIN_POWER, lane] += forces.spin
+    S[state.LOAD + side, lane] -= forces.z
+    S[state.LATERAL + side, lane] -= sign * forces.y
+
+
+def add_wheels(S: Array, Q: Array, lane: int) -> None:
+    """Forces and powers of all wheels of the section; the forces in ground axes, too."""
+    count = Q[constant.AXLES, lane] * S[state.ON_TRACK, lane]
+    for side in range(2):
+        S[state.LOAD + side, lane] *= count
+        S[state.LATERAL + side, lane] *= count
+    S[state.FORCE_PSI, lane] *= count
+    S[state.HERTZ_ENERGY, lane] *= count
+    for k in range(3):
+        S[state.CONTACT_POWER + k, lane] *= count
+    force_y = -(S[state.LATERAL_LEFT, lane] + S[state.LATERAL_RIGHT, lane])
+    force_z = -(S[state.LOAD_LEFT, lane] + S[state.LOAD_RIGHT, lane])
+    sine = S[state.TRACK_SIN, lane]
+    cosine = S[state.TRACK_COS, lane]
+    S[state.FORCE_Y, lane] = force_y
+    S[state.FORCE_Z, lane] = force_z
+    S[state.WHEELSET_Y, lane] = cosine * force_y - sine * force_z
+    S[state.WHEELSET_Z, lane] = sine * force_y + cosine * force_z
+    S[state.WHEELSET_PHI, lane] = S[state.FORCE_PSI, lane]

@@ -1,0 +1,102 @@
+"""The rows of the constants ``Q[row, lane]``: everything of a run that stays fixed."""
+
+from railquake.march.declaration import Row, block, row
+
+__all__ = ["CONSTANT_ROWS"]
+
+_AXIS = (
+    ("FINE", "fine within +- this"),
+    ("END", "and ends at +- this"),
+    ("FINE_RATE", "fine cells per unit"),
+    ("COARSE_RATE", "coarse cells per unit"),
+    ("COARSE_CELLS", "coarse cells on each side"),
+    ("INNER_CELLS", "fine cells"),
+)
+
+_TIME = (
+    row("DT", "s", "time step of the wheelset on its rails"),
+    row("FRAME_STEPS", "1", "time steps in a frame"),
+    row("SUBSTEPS", "1", "time steps in one of structure and sprung bodies"),
+    row("RATE", "1/s", "1/(SUBSTEPS dt)"),
+)
+
+# symmetric matrices as the rows of their upper triangles (`packed`)
+_STRUCTURE = (
+    row("GROUND_LOAD", "kg", "what the ground's acceleration acts on", rows="STRUCTURE"),
+    row("MASS", "kg or kg m2", "masses and inertias (Eq. 9)", rows="STRUCTURE"),
+    row("K", "N/m, N or N m", "stiffness, hinge apart (Eq. 10)", rows="STRUCTURE_ENTRIES"),
+    row("C", "N s/m, N s or N m s", "damping", rows="STRUCTURE_ENTRIES"),
+    row("FLEX", "m/N, 1/N or 1/(N m)", "inverse of Newmark's matrix", rows="STRUCTURE_ENTRIES"),
+    block(
+        "OFFSET",
+        "of the track from the node that carries it (`track.Offset`)",
+        (
+            ("MAP_U", "1", "Y_t = MAP_U u + MAP_H phi"),
+            ("MAP_H", "m", "height"),
+            ("MAP_E", "m", "Z_t = MAP_E phi"),
+            ("MAP_PHI", "1", "phi_t = MAP_PHI phi, phi = -theta_2"),
+        ),
+    ),
+    row("REACTION", "1", "1: the contact forces act on the pier; 0: they do not"),
+)
+
+_CONTACT = (
+    row("ZHAI_PSI", "1", "psi of Eq. 2"),
+    row("ZHAI_PHI", "1", "phi of Eq. 3"),
+    row("GRAVITY", "m/s2", "standard gravity"),
+    row("WHEELSET_HEIGHT", "m", "wheelset's centre of gravity above the rail crowns"),
+    row("AXLES", "1", "wheels a side that the section stands for"),
+    block(
+        "CONTACT",
+        "material and speed (`patch.Contact`)",
+        (
+            ("ALPHA_R", "1", "of the restitution law"),
+            ("ONSET_BOUND", "m/s", "least rate at the onset of a contact"),
+            ("FRICTION", "1", "mu"),
+            ("INVERSE_SPEED", "s/m", "1/max(V, bound)"),
+        ),
+    ),
+    block(
+        "SHIFT_AXIS",
+        "of the contact table (`contact_table.AxisCells`)",
+        [(f"SHIFT_{name}", "m or 1/m", meaning) for name, meaning in _AXIS],
+    ),
+    block(
+        "ROLL_AXIS",
+        "of the contact table (`contact_table.AxisCells`)",
+        [(f"ROLL_{name}", "rad or 1/rad", meaning) for name, meaning in _AXIS],
+    ),
+)
+
+_MEASURES = (
+    block(
+        "LIMITS",
+        "thresholds of events (`derailment.Limits`)",
+        (
+            ("REFERENCE_ROLL", "rad", "relative roll at the onset of slide-off"),
+            ("RAIL_CENTRE", "m", "half the distance between the rails' centre lines"),
+            ("SHIFT_LIMIT", "m", "lateral shift that counts as derailed"),
+            ("ROLL_LIMIT", "rad", "relative roll that counts as overturned"),
+        ),
+    ),
+    row("TIP_Y", "m", "flange tip in wheelset axes of the right-hand wheel, right"),
+    row("TIP_Z", "m", "flange tip in wheelset axes of the right-hand wheel, down"),
+    row("STATIC_WHEEL_LOAD", "N", "of one side of the section"),
+    row("VEHICLE_MASS", "kg", "of all bodies"),
+    block(
+        "FILTER_BY",
+        "low-pass of the frame means (`low_pass.Coefficients`)",
+        [(f"FILTER_{name}", "1", f"{name.lower()}") for name in ("B0", "B1", "B2", "A1", "A2")],
+    ),
+)
+
+# in the order of `march.order`
+_VEHICLE = (
+    row("BODY_MASS", "kg", "of each body", rows="BODIES"),
+    row("INVERSE_MASS", "1/kg or 1/(kg m2)", "of each degree of freedom", rows="DOFS"),
+    row("STIFFNESS", "N/m, N or N m", "K_v", rows="VEHICLE_ENTRIES"),
+    row("DAMPING", "N s/m, N s or N m s", "C_v", rows="VEHICLE_ENTRIES"),
+)
+
+CONSTANT_ROWS: tuple[Row, ...] = (*_TIME, *_STRUCTURE, *_CONTACT, *_MEASURES, *_VEHICLE)
+"""The hinge's own rows follow: `rows.hinge_parts`."""

@@ -1,0 +1,308 @@
+"""The rows of the state ``S[row, lane]``: everything of a run that changes with time."""
+
+from railquake.march.declaration import Row, block, row
+from railquake.physics.derailment import EVENTS
+
+__all__ = ["FILTERED", "PATCHES", "STATE_ROWS"]
+
+PATCHES = ("left tread", "left flange", "right tread", "right flange")
+FILTERED = ("lateral force", "load left", "load right", "lateral left", "lateral right")
+
+_GROUND = (
+    row("GROUND", "m/s2", "ground acceleration, lateral", "ground_acceleration_m_s2"),
+    row("GROUND_SLOPE", "m/s2", "its change per step of the structure"),
+    row("GROUND_Z", "m/s2", "ground acceleration, down", "ground_acceleration_down_m_s2"),
+    row("GROUND_Z_SLOPE", "m/s2", "its change per step of the structure"),
+)
+
+# Eqs. 9, 10: of the pier u, theta_1 at the base and theta_2 at the top; of any structure the
+# displacement and the rotation of the node that carries the track, and the hinge's rotation
+_STRUCTURE = (
+    block(
+        "STRUCTURE_X",
+        "displacements",
+        (
+            ("U", "m", "pier top relative to the ground", "bridge_displacement_m", "TOP"),
+            (
+                "THETA1", "rad", "rotation of the plastic hinge, theta_1", "hinge_rotation_rad",
+                "HINGE",
+            ),
+            (
+                "THETA2", "rad", "rotation of the pier's top, theta_2", "top_rotation_rad",
+                "TOP_ROLL",
+            ),
+        ),
+        rows="STRUCTURE",
+    ),
+    block(
+        "STRUCTURE_V",
+        "velocities",
+        (
+            ("U_V", "m/s", "pier top relative to the ground", "bridge_velocity_m_s", "TOP"),
+            ("THETA1_V", "rad/s", "rate of theta_1", None, "HINGE"),
+            ("THETA2_V", "rad/s", "rate of theta_2", None, "TOP_ROLL"),
+        ),
+        rows="STRUCTURE",
+    ),
+    block(
+        "STRUCTURE_A",
+        "accelerations, relative to the ground",
+        (
+            ("U_A", "m/s2", "pier top, absolute", "bridge_acceleration_m_s2", "TOP"),
+            ("THETA1_A", "rad/s2", "of theta_1", None, "HINGE"),
+            ("THETA2_A", "rad/s2", "of theta_2", None, "TOP_ROLL"),
+        ),
+        rows="STRUCTURE",
+    ),
+    row("UNBALANCED", "N or N m", "what a step's increments must balance", rows="STRUCTURE"),
+    row("STRUCTURE_STEP", "m or rad", "increments of the last step", rows="STRUCTURE"),
+    row("MOMENT", "N m", "moment of the hinge", "base_moment_n_m"),
+)  # fmt: skip
+
+_TRACK = (
+    block(
+        "TRACK",
+        "track's origin within the structure's step",
+        (
+            ("TRACK_Y", "m", "track's origin, right", "track_lateral_m"),
+            ("TRACK_Z", "m", "track's origin, down", "track_vertical_m"),
+            ("TRACK_PHI", "rad", "track's roll, right side down", "track_roll_rad"),
+        ),
+    ),
+    block(
+        "TRACK_V",
+        "its velocity",
+        (
+            ("TRACK_VY", "m/s", "right"),
+            ("TRACK_VZ", "m/s", "down"),
+            ("TRACK_VPHI", "rad/s", "roll"),
+        ),
+    ),
+    row("TRACK_A", "m/s2 or rad/s2", "its acceleration during the structure's step", rows=3),
+    row("TRACK_SIN", "1", "sine of its roll"),
+    row("TRACK_COS", "1", "cosine of its roll"),
+)
+
+_WHEELSET = (
+    block(
+        "ARM",
+        "wheelset's centre from the track's origin in ground axes",
+        (("ARM_Y", "m", "right"), ("ARM_Z", "m", "down")),
+    ),
+    row(
+        "SHIFT", "m", "wheelset relative to the track, right; NaN once it has left the track",
+        "lateral_shift_m", train=True,
+    ),
+    row("HEIGHT", "m", "wheelset's centre in track axes, down", "wheelset_height_m", train=True),
+    row("ROLL", "rad", "wheelset relative to the track", "relative_roll_rad", train=True),
+    row("SHIFT_V", "m/s", "rate of the shift"),
+    row("HEIGHT_V", "m/s", "rate of the height"),
+    row("ROLL_V", "rad/s", "rate of the roll"),
+    row("ROLL_SIN", "1", "sine of the relative roll"),
+    row("ROLL_COS", "1", "cosine of the relative roll"),
+)  # fmt: skip
+
+# the contact table's cell of each side (left, right); the axes are symmetric
+_CELLS = (
+    row("CELL_BASE", "1", "first number of the cell in the table", rows=2),
+    row("CELL_SHIFT", "1", "place within the cell along the shift, 0 to 1", rows=2),
+    row("CELL_SHIFT_RATE", "1/m", "cells per metre", rows=2),
+    row("CELL_ROLL", "1", "place within the cell along the roll, 0 to 1", rows=2),
+    row("CELL_ROLL_RATE", "1/rad", "cells per radian", rows=2),
+    row("CELL_HELD", "1", "the cell whose polynomials are at hand; -1: none", rows=2),
+    row("POLYNOMIALS", "SI", "`contact_table.Polynomials` of each patch", rows="POLYNOMIAL_ROWS"),
+)
+
+_PATCHES = (
+    row("PATCH_HYSTERESIS", "s/m", "chi/K of each patch; 0 while open", rows=len(PATCHES)),
+    block(
+        "PATCH_PENETRATION",
+        "vertical penetration of each patch",
+        tuple(
+            (
+                f"PENETRATION_{patch.replace(' ', '_').upper()}",
+                "m",
+                f"vertical, {patch}" + ("; negative: gap" if patch == PATCHES[0] else ""),
+                f"penetration_{patch.replace(' ', '_')}_m",
+            )
+            for patch in PATCHES
+        ),
+        train=True,
+    ),
+    row("NEAR", "1", "1 for each side whose flange may touch its rail before the next look", rows=2),
+)
+
+_FORCES = tuple(
+    one._replace(released=True)
+    for one in (
+        # all wheels of the section: on the wheelset, in track axes
+        row("FORCE_Y", "N", "of the train on the track", "lateral_force_n"),
+        row("FORCE_Z", "N", "contact force on the wheelset, down"),
+        row("FORCE_PSI", "N m", "its moment about the wheelset's centre"),
+        row("HERTZ_ENERGY", "J", "elastic energy of the contacts"),
+        block(
+            "CONTACT_POWER",
+            "powers of the contact",
+            (
+                ("IMPACT_POWER", "W", "lost to the normal force's hysteresis"),
+                ("CREEP_POWER", "W", "lost to creepage"),
+                ("SPIN_POWER", "W", "brought in by spin"),
+            ),
+        ),
+        row("CONTACT_POWER_OLD", "W", "the same, one time step before", rows=3),
+        block(
+            "LOAD",
+            "vertical load of the wheels of each side on their rail",
+            (
+                ("LOAD_LEFT", "N", "vertical load of the left wheels", "wheel_load_left_n"),
+                ("LOAD_RIGHT", "N", "vertical load of the right wheels", "wheel_load_right_n"),
+            ),
+        ),
+        block(
+            "LATERAL",
+            "lateral force of the wheels of each side on their rail",
+            (("LATERAL_LEFT", "N", "left wheels"), ("LATERAL_RIGHT", "N", "right wheels")),
+        ),
+        block(
+            "WHEELSET_FORCE",
+            "contact force on the wheelset in ground axes",
+            (
+                ("WHEELSET_Y", "N", "right"),
+                ("WHEELSET_Z", "N", "down"),
+                ("WHEELSET_PHI", "N m", "roll"),
+            ),
+        ),
+        row("WHEELSET_FORCE_OLD", "N or N m", "the same, one time step before", rows=3),
+        block(
+            "TRACK_FORCE",
+            "what acts on the track's origin during a step of the structure",
+            (("TRACK_FY", "N", "right"), ("TRACK_FZ", "N", "down"), ("TRACK_MX", "N m", "roll")),
+        ),
+        row("TRACK_FORCE_OLD", "N or N m", "the same during the step before", rows=3),
+        row("TRACK_CONTACT", "N or N m", "contact force on it at that step's begin", rows=3),
+        block(
+            "NODE",
+            "the train's force on the structure",
+            (
+                ("NODE_U", "N", "on the top, right", None, "TOP"),
+                ("NODE_THETA2", "N m", "on the top's rotation", None, "TOP_ROLL"),
+            ),
+            rows="STRUCTURE",
+        ),
+    )
+)
+
+_SUSPENSION = (
+    row("WHEELSET_FREE", "m/s2 or rad/s2", "wheelset's acceleration but for the contact", rows=3),
+    row("WHEELSET_FREE_KNOWN", "m/s2 or rad/s2", "the same as last evaluated", rows=3),
+    row("WHEELSET_FREE_SLOPE", "m/s2 or rad/s2", "its change per time step", rows=3),
+    block(
+        "WHEELSET_FROM",
+        "where the wheelset was before the structure's step",
+        (("WHEELSET_FROM_Y", "m", "right"), ("WHEELSET_FROM_Z", "m", "down")),
+    ),
+)
+
+_ENERGY = (
+    row("WORK_GROUND", "J", "work of the effective ground forces"),
+    row("WORK_GRAVITY", "J", "work of gravity"),
+    row("WORK_VEHICLE", "J", "work of the contact forces on the vehicle"),
+    row("WORK_TRACK", "J", "work of the contact forces on the track"),
+    row("LOST_RAYLEIGH", "J", "lost to structural damping"),
+    row("LOST_DASHPOTS", "J", "lost to the dashpots"),
+    row("HINGE_ENERGY", "J", "integral of the hinge's moment over its rotation"),
+    block(
+        "CONTACT_LOST",
+        "integrals of the contact's powers",
+        (
+            ("LOST_IMPACT", "J", "lost to the normal force's hysteresis"),
+            ("LOST_CREEP", "J", "lost to creepage"),
+            ("SPIN_INPUT", "J", "brought in by the train's forward motion"),
+        ),
+    ),
+    row("DASHPOT_POWER", "W", "of the dashpots", released=True),
+    row("DASHPOT_POWER_OLD", "W", "the same, one step before"),
+    row("VEHICLE_ENERGY", "J", "kinetic and elastic, kept when the vehicle leaves the model"),
+    row("HERTZ_LEFT", "J", "Hertz energy that goes with it"),
+)
+
+_PEAKS = (
+    row("PEAK_U", "m", "largest displacement of the pier's top"),
+    row("PEAK_U_V", "m/s", "largest velocity of the pier's top"),
+    row("PEAK_U_A", "m/s2", "largest acceleration of the pier's top, absolute"),
+    row("PEAK_THETA1", "rad", "largest rotation of the hinge"),
+    row("PEAK_MOMENT", "N m", "largest moment of the hinge"),
+    row("PEAK_THETA2", "rad", "largest rotation of the pier's top"),
+    row("PEAK_ROLL", "rad", "largest relative roll"),
+    row("PEAK_SHIFT", "m", "largest lateral shift"),
+    row("PEAK_LOAD", "N", "largest load of one side's wheels"),
+    row("PEAK_LATERAL", "N", "largest lateral force on the track"),
+    row("TIME_ONE_WHEEL", "s", "with at least one wheel off its rail"),
+    row("TIME_DETACHED", "s", "with both wheels off"),
+)
+
+_FRAME = (
+    block(
+        "SUM",
+        "sums over the frame of what is low-passed, in the order of `FILTERED`",
+        (
+            ("SUM_LATERAL", "N", "lateral force on the track"),
+            ("SUM_LOAD_LEFT", "N", "load of the left wheels"),
+            ("SUM_LOAD_RIGHT", "N", "load of the right wheels"),
+            ("SUM_LATERAL_LEFT", "N", "lateral force of the left wheels"),
+            ("SUM_LATERAL_RIGHT", "N", "lateral force of the right wheels"),
+        ),
+    ),
+    row("FILTER_X1", "N", "low-pass filters: last input", rows=len(FILTERED)),
+    row("FILTER_X2", "N", "input before", rows=len(FILTERED)),
+    block(
+        "FILTER_Y1",
+        "last output",
+        (
+            ("LATERAL_FILTERED", "N", "the same, low-passed", "lateral_force_filtered_n"),
+            ("LOAD_LEFT_FILTERED", "N", "low-passed", "wheel_load_left_filtered_n"),
+            ("LOAD_RIGHT_FILTERED", "N", "low-passed", "wheel_load_right_filtered_n"),
+        ),
+        rows=len(FILTERED),
+    ),
+    row("FILTER_Y2", "N", "output before", rows=len(FILTERED)),
+    row("PEAK_LATERAL_FILTERED", "N", "largest low-passed lateral force"),
+    row("LOWEST_LOAD", "N", "least low-passed load of one side"),
+    row("PEAK_DERAILMENT_COEFFICIENT", "1", "largest low-passed Y/Q"),
+    row("PEAK_CLEARANCE", "m", "flange tip above the rail's crown at its highest"),
+    row("ON_TRACK", "1", "1, or 0 once the vehicle has derailed and left the model"),
+    row("FRAMES", "1", "frames marched"),
+    row("TIME", "s", "at the frame's end"),
+    row("UNCONVERGED", "1", "steps in which the hinge's equation was not solved"),
+    row("DIVERGED", "1", "1 once a state has left every plausible bound"),
+    row("FLAGS", "1", "sum of 2^k over the events k that hold", "events"),
+    row("UPLIFTS", "1", "number of times that uplift began"),
+    row("UPLIFT_END", "s", "when uplift last ended; negative: never"),
+    row("LEAVING", "1", "1 at the frame at which the vehicle leaves the model"),
+    row("FIRST_TIME", "s", "when each event first held; negative: never", rows=len(EVENTS)),
+)
+
+# a cubic of the place within the frame for y, z and phi
+_PRESCRIBED = (
+    row("TRACK_C0", "m or rad", "prescribed track: constant", rows=3),
+    row("TRACK_C1", "m or rad", "linear coefficient", rows=3),
+    row("TRACK_C2", "m or rad", "quadratic coefficient", rows=3),
+    row("TRACK_C3", "m or rad", "cubic coefficient", rows=3),
+    row("TRACK_PLACE", "1", "place within the frame, 0 to 1"),
+    row("TRACK_RATE", "1/s", "one over the frame's length"),
+)
+
+# in the order of `march.order`
+_VEHICLE = (
+    row("VEHICLE_X", "m or rad", "displacement of each degree of freedom", rows="DOFS", train=True),
+    row("VEHICLE_V", "m/s or rad/s", "velocity", rows="DOFS", released=True),
+    row("VEHICLE_A", "m/s2 or rad/s2", "acceleration", rows="DOFS", released=True),
+    row("VEHICLE_A_OLD", "m/s2 or rad/s2", "acceleration before", rows="DOFS", released=True),
+    row("VEHICLE_STEP", "m or rad", "last increment of the displacement", rows="DOFS"),
+)
+
+STATE_ROWS: tuple[Row, ...] = (
+    *_GROUND, *_STRUCTURE, *_TRACK, *_WHEELSET, *_CELLS, *_PATCHES, *_FORCES, *_SUSPENSION,
+    *_ENERGY, *_PEAKS, *_FRAME, *_PRESCRIBED, *_VEHICLE,
+)  # fmt: skip
+"""The hinge's own rows follow: `rows.hinge_parts`."""

@@ -1,0 +1,183 @@
+"""What may be swapped: every slot of the march by a neutral name, and what may stand there.
+
+A slot is a function, or some that belong together, that the march and the physics call by a
+neutral name; what stands in its place is chosen when a kernel is bound.  `SLOTS` is the one list of
+them: assembly, the key of the cache and the documentation read it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from railquake.march import contact, frames, ground, structure, track
+from railquake.march.packing import reader, writer
+from railquake.physics import creep, elementary, hinge, impact
+from railquake.physics.creep import CREEP_LAWS
+from railquake.physics.hinge import HINGE_LAWS
+from railquake.physics.impact import RESTITUTION_LAWS
+
+__all__ = ["SLOTS", "Slot", "chosen"]
+
+Law = Callable[..., Any]
+Laws = Mapping[Law, Law]
+
+
+@dataclass(frozen=True)
+class Slot:
+    """One choice.
+
+    Attributes
+    ----------
+    name : str
+    decided_by : str
+        Which input, or what else.
+    functions : tuple of function
+        The neutral functions that are replaced.
+    laws : callable
+        ``name of a choice -> {neutral function: what stands in its place}``.
+    names : callable
+        ``() -> names that may be chosen``.
+    """
+
+    name: str
+    decided_by: str
+    functions: tuple[Law, ...]
+    laws: Callable[[str], Laws]
+    names: Callable[[], tuple[str, ...]]
+
+
+def _fixed(name: str, decided_by: str, choices: Mapping[str, Laws]) -> Slot:
+    functions = tuple(dict.fromkeys(slot for laws in choices.values() for slot in laws))
+    return Slot(name, decided_by, functions, choices.__getitem__, lambda: tuple(choices))
+
+
+def _hinge(name: str) -> Laws:
+    law = HINGE_LAWS[name]
+    state = type(law.virgin)
+    return {
+        hinge.advance: law.advance,
+        hinge.refresh: law.refresh,
+        structure.read_hinge: reader(state),
+        structure.write_hinge: writer(state),
+        structure.read_hinge_parameters: reader(law.parameter_fields),
+    }
+
+
+_NODE: Laws = {
+    structure.move_structure: structure.move_structure_with_hinge,
+    track.place_track: track.place_carried_track,
+    track.lead_track: track.lead_carried_track,
+    ground.begin_frame: ground.begin_frame_on_ground,
+}
+_PRESCRIBED: Laws = {
+    structure.move_structure: structure.hold_structure,
+    track.place_track: track.place_prescribed_track,
+    track.lead_track: track.lead_prescribed_track,
+    ground.begin_frame: ground.begin_frame_on_prescribed_track,
+}
+_TABLE: Laws = {
+    contact.locate_cells: contact.locate_in_table,
+    contact.fetch_cells: contact.fetch_polynomials,
+    contact.patch: contact.patch_by_table,
+}
+_GRID: Laws = {
+    contact.locate_cells: contact.no_cells,
+    contact.fetch_cells: contact.no_polynomials,
+    contact.patch: contact.patch_by_grid,
+}
+_ABREAST: Laws = {
+    frames.look_again: frames.look_again_abreast,
+    contact.flange_near: contact.any_flange_near,
+    contact.press_patch: contact.evaluated_patch,
+    # what a vector unit can do
+    elementary.exponential: elementary.exponential_polynomial,
+    elementary.power: elementary.power_polynomial,
+}
+_ALONE: Laws = {
+    frames.look_again: frames.nothing_again,
+    contact.flange_near: contact.every_flange_near,
+    contact.press_patch: contact.closed_patch,
+}
+
+SLOTS: tuple[Slot, ...] = (
+    Slot(
+        "creep law",
+        "`wheelrail.creep_law`",
+        (creep.saturation,),
+        lambda name: {creep.saturation: CREEP_LAWS[name].saturation},
+        lambda: CREEP_LAWS.names(),
+    ),
+    Slot(
+        "restitution law",
+        "`wheelrail.restitution_law`",
+        (impact.hysteresis,),
+        lambda name: {impact.hysteresis: RESTITUTION_LAWS[name].hysteresis},
+        lambda: RESTITUTION_LAWS.names(),
+    ),
+    Slot(
+        "hinge law",
+        "`support.hinge`",
+        (
+            hinge.advance,
+            hinge.refresh,
+            structure.read_hinge,
+            structure.write_hinge,
+            structure.read_hinge_parameters,
+        ),
+        _hinge,
+        lambda: HINGE_LAWS.names(),
+    ),
+    _fixed("structure", "`support.kind`", {"node": _NODE, "prescribed": _PRESCRIBED}),
+    _fixed("contact method", "`solver.contact`", {"table": _TABLE, "grid": _GRID}),
+    _fixed(
+        "engine",
+        "whether a run is by itself, many are abreast, or each is a thread on a GPU",
+        {
+            "alone": _ALONE,
+            "abreast": _ABREAST,
+            "device": {**_ABREAST, contact.press_patch: contact.closed_patch},
+        },
+    ),
+)
+
+
+def chosen(choices: Mapping[str, str]) -> dict[Law, Law]:
+    """What stands in the slots.
+
+    Parameters
+    ----------
+    choices : mapping of str to str
+        Name of the choice by name of the slot; a slot left out stays empty.
+
+    Returns
+    -------
+    dict
+        For `compiler.bind`.
+    """
+    return {slot: law for each in _laws_of(choices) for slot, law in each.items()}
+
+
+def _laws_of(choices: Mapping[str, str]) -> Iterator[Laws]:
+    known = {slot.name: slot for slot in SLOTS}
+    for name, choice in choices.items():
+        yield known[name].laws(choice)
+
+
+def solving(hinge_law: str, linearised: bool, abreast: bool) -> dict[Law, Law]:
+    """How the hinge's equation is solved.
+
+    Parameters
+    ----------
+    hinge_law : str
+    linearised : bool
+        By one consistently linearised solve a step (``solver.hinge_solve``).
+    abreast : bool
+        With what the law puts in the place of its functions where many run abreast.
+    """
+    law = HINGE_LAWS[hinge_law]
+    laws: dict[Law, Law] = dict(law.abreast) if abreast else {}
+    if linearised and law.linearised is not None:
+        laws[hinge.advance] = law.linearised
+    return laws

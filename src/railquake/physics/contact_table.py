@@ -1,0 +1,258 @@
+"""The grid method's results in a table over shift and roll, and what is read from it.
+
+For given lateral shift Y and roll psi of the wheelset the place of each zone's smallest gap, its
+angle and curvatures do not depend on the height (see `profiles`), so they are found once, by the
+grid method, at the nodes of a table: fine where a wheel runs, coarse where it has left the rail.
+Within a cell the gap is a cubic in both, made from the nodes' G, dG/dY and dG/dpsi, and its
+derivatives are those of this very interpolation: the normal force remains the gradient of the gap.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from railquake.physics.elementary import floor_of
+from railquake.physics.profiles import (
+    POSITIVE,
+    Geometry,
+    Patch,
+    cubic,
+    hermite_coefficients,
+    zone_contact,
+)
+
+__all__ = [
+    "FIELDS",
+    "Axis",
+    "AxisCells",
+    "Polynomials",
+    "axis_cell",
+    "axis_cells",
+    "axis_nodes",
+    "cell_polynomials",
+    "fill_table",
+    "patch_in_cell",
+]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+# Of one zone at one node of the table, in the order of `profiles.Patch`.
+FIELDS = len(Patch._fields)
+
+
+class Axis(NamedTuple):
+    """A table axis: evenly spaced finely within +-fine, coarsely beyond up to +-end."""
+
+    fine: float
+    fine_step: float
+    coarse_step: float
+    end: float
+
+
+def axis_nodes(axis: Axis) -> Array:
+    """Nodes of the axis, from -end to +end."""
+    half = round((axis.end - axis.fine) / axis.coarse_step)
+    inner = round(2.0 * axis.fine / axis.fine_step)
+    left = -axis.end + axis.coarse_step * np.arange(half)
+    middle = -axis.fine + axis.fine_step * np.arange(inner)
+    right = axis.fine + axis.coarse_step * np.arange(half + 1)
+    return np.concatenate([left, middle, right])
+
+
+class AxisCells(NamedTuple):
+    """What `axis_cell` needs of an `Axis`."""
+
+    fine: float
+    end: float
+    fine_rate: float  # cells per unit
+    coarse_rate: float
+    coarse_cells: float  # on each side
+    inner_cells: float
+
+
+def axis_cells(axis: Axis) -> AxisCells:
+    """Numbers of an axis's cells."""
+    return AxisCells(
+        axis.fine,
+        axis.end,
+        1.0 / axis.fine_step,
+        1.0 / axis.coarse_step,
+        float(round((axis.end - axis.fine) / axis.coarse_step)),
+        float(round(2.0 * axis.fine / axis.fine_step)),
+    )
+
+
+def axis_cell(x: float, axis: AxisCells) -> tuple[float, float, float]:
+    """Cell of x on an `Axis`: number of its left node, place in the cell (0 to 1), cells per unit.
+
+    Beyond the ends x is held at the end.
+    """
+    bounded = min(max(x, -axis.end), axis.end)
+    inside = abs(bounded) < axis.fine
+    right = bounded >= axis.fine
+    rate = axis.fine_rate if inside else axis.coarse_rate
+    origin = -axis.fine if inside else (axis.fine if right else -axis.end)
+    beyond = axis.coarse_cells + axis.inner_cells if right else 0.0
+    first = axis.coarse_cells if inside else beyond
+    cells = axis.inner_cells if inside else axis.coarse_cells
+    place = (bounded - origin) * rate
+    cell = min(max(floor_of(place), 0.0), cells - 1.0)
+    return first + cell, place - cell, rate
+
+
+class Polynomials(NamedTuple):
+    """One zone's polynomials within a cell, in the places w (shift) and w_roll of 0 to 1.
+
+    The gap is a polynomial of w_roll whose coefficients are polynomials of w: ``gap_ij`` goes with
+    w_roll^i w^j.  The rest is bilinear, ``(1, w, w_roll, w w_roll)``.
+    """
+
+    gap_00: float
+    gap_01: float
+    gap_02: float
+    gap_03: float
+    gap_10: float
+    gap_11: float
+    gap_20: float
+    gap_21: float
+    gap_22: float
+    gap_23: float
+    gap_30: float
+    gap_31: float
+    gap_32: float
+    gap_33: float
+    rail_z: float
+    rail_z_1: float
+    rail_z_2: float
+    rail_z_3: float
+    stiffness: float
+    stiffness_1: float
+    stiffness_2: float
+    stiffness_3: float
+    creep: float
+    creep_1: float
+    creep_2: float
+    creep_3: float
+    spin: float
+    spin_1: float
+    spin_2: float
+    spin_3: float
+
+
+def cell_polynomials(
+    corner: int, next_roll: int, width: float, roll_width: float, table: Array
+) -> Polynomials:
+    """Polynomials of one zone in one cell.
+
+    Parameters
+    ----------
+    corner : int
+        First number in the table of the zone at the cell's corner of least shift and roll.
+    next_roll : int
+        Numbers from there to the corner of the same shift and the next roll.
+    width, roll_width : float
+        Of the cell, m and rad.
+    table : array
+        See `fill_table`.
+    """
+    # corners: (shift, roll) = (low, low), (high, low), (low, high), (high, high)
+    c00 = corner
+    c10 = c00 + 2 * FIELDS
+    c01 = c00 + next_roll
+    c11 = c01 + 2 * FIELDS
+    low = hermite_coefficients(
+        table[c00], table[c10], width * table[c00 + 1], width * table[c10 + 1]
+    )
+    high = hermite_coefficients(
+        table[c01], table[c11], width * table[c01 + 1], width * table[c11 + 1]
+    )
+    low_0 = roll_width * table[c00 + 2]
+    low_1 = roll_width * (table[c10 + 2] - table[c00 + 2])
+    high_0 = roll_width * table[c01 + 2]
+    high_1 = roll_width * (table[c11 + 2] - table[c01 + 2])
+    gap_20, gap_30 = climb(low[0], high[0], low_0, high_0)
+    gap_21, gap_31 = climb(low[1], high[1], low_1, high_1)
+    gap_22, gap_32 = climb(low[2], high[2], 0.0, 0.0)
+    gap_23, gap_33 = climb(low[3], high[3], 0.0, 0.0)
+    z_0, z_1, z_2, z_3 = bilinear(table[c00 + 3], table[c10 + 3], table[c01 + 3], table[c11 + 3])
+    k_0, k_1, k_2, k_3 = bilinear(table[c00 + 4], table[c10 + 4], table[c01 + 4], table[c11 + 4])
+    f_0, f_1, f_2, f_3 = bilinear(table[c00 + 5], table[c10 + 5], table[c01 + 5], table[c11 + 5])
+    s_0, s_1, s_2, s_3 = bilinear(table[c00 + 6], table[c10 + 6], table[c01 + 6], table[c11 + 6])
+    return Polynomials(
+        low[0], low[1], low[2], low[3], low_0, low_1,
+        gap_20, gap_21, gap_22, gap_23, gap_30, gap_31, gap_32, gap_33,
+        z_0, z_1, z_2, z_3, k_0, k_1, k_2, k_3, f_0, f_1, f_2, f_3, s_0, s_1, s_2, s_3,
+    )  # fmt: skip
+
+
+def climb(low: float, high: float, d0: float, d1: float) -> tuple[float, float]:
+    """Second and third coefficient of the cubic from ``low`` to ``high`` with those slopes."""
+    rise = high - low
+    return 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise
+
+
+def bilinear(
+    f00: float, f10: float, f01: float, f11: float
+) -> tuple[float, float, float, float]:
+    """Coefficients of 1, w, w_roll and w w_roll from the corners' values."""
+    return f00, f10 - f00, f01 - f00, f11 - f10 - f01 + f00
+
+
+def blend(w: float, w_roll: float, c0: float, c1: float, c2: float, c3: float) -> float:
+    """Bilinear interpolation within a cell."""
+    return c0 + w * c1 + w_roll * (c2 + w * c3)
+
+
+def gap_in_cell(cell: Polynomials, w: float, w_roll: float) -> tuple[float, float, float]:
+    """Gap G within a cell and its derivatives by the places ``w`` (shift) and ``w_roll``.
+
+    Cubic (Hermite) in the shift from the corners' G and dG/dY, then in the roll from these and
+    dG/dpsi, the last linear in the shift.
+    """
+    q0, r0 = cubic(w, cell.gap_00, cell.gap_01, cell.gap_02, cell.gap_03)
+    r1 = cell.gap_11
+    q1 = cell.gap_10 + w * r1
+    q2, r2 = cubic(w, cell.gap_20, cell.gap_21, cell.gap_22, cell.gap_23)
+    q3, r3 = cubic(w, cell.gap_30, cell.gap_31, cell.gap_32, cell.gap_33)
+    gap, gap_roll = cubic(w_roll, q0, q1, q2, q3)
+    return gap, r0 + w_roll * (r1 + w_roll * (r2 + w_roll * r3)), gap_roll
+
+
+def patch_in_cell(
+    cell: Polynomials, w: float, w_roll: float, rate: float, roll_rate: float
+) -> Patch:
+    """What `profiles.zone_contact` gives, from the polynomials of the wheel's cell.
+
+    ``rate`` and ``roll_rate`` are the cells per metre and per radian.
+    """
+    gap, slope, gap_psi = gap_in_cell(cell, w, w_roll)
+    return Patch(
+        gap,
+        slope * rate,
+        gap_psi * roll_rate,
+        blend(w, w_roll, cell.rail_z, cell.rail_z_1, cell.rail_z_2, cell.rail_z_3),
+        blend(w, w_roll, cell.stiffness, cell.stiffness_1, cell.stiffness_2, cell.stiffness_3),
+        blend(w, w_roll, cell.creep, cell.creep_1, cell.creep_2, cell.creep_3),
+        blend(w, w_roll, cell.spin, cell.spin_1, cell.spin_2, cell.spin_3),
+    )
+
+
+def fill_table(shifts: Array, rolls: Array, geometry: Geometry, table: Array) -> None:
+    """Fill ``table`` (one row per roll and shift, shifts fastest) by the grid method."""
+    for i in range(len(rolls)):
+        for j in range(len(shifts)):
+            base = (i * len(shifts) + j) * 2 * FIELDS
+            for zone in range(2):
+                first = geometry.flange_points if zone == 0 else 0
+                last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
+                gap, slope, gap_psi, height, stiffness, f22, f23 = zone_contact(
+                    shifts[j], rolls[i], first, last, geometry
+                )
+                place = base + zone * FIELDS
+                table[place] = gap
+                table[place + 1] = slope
+                table[place + 2] = gap_psi
+                table[place + 3] = height
+                table[place + 4] = stiffness
+                table[place + 5] = f22
+                table[place + 6] = f23

@@ -1,0 +1,105 @@
+"""One patch of a wheel on its rail: gap, normal and tangential force together (Eqs. 4 to 8).
+
+The vertical gap G(Y, psi) - Z and its derivatives dG/dY = tan(gamma) and dG/dpsi say where the
+patch is and how it closes; Hertz' stiffness, the loss at impacts and the creep force follow, and as
+generalised forces on the wheelset they are the gradient of the gap and its transverse.
+"""
+
+import math
+from typing import NamedTuple
+
+from railquake.physics.creep import linear_force, saturation
+from railquake.physics.impact import hysteresis, normal_force
+from railquake.physics.profiles import Patch
+
+__all__ = ["Contact", "PatchForces", "WheelMotion", "closing_rate", "patch_forces"]
+
+
+class WheelMotion(NamedTuple):
+    """The wheelset in track axes, seen from a right-hand wheel."""
+
+    height: float  # Z, m
+    shift_v: float  # Y', m/s
+    height_v: float  # Z', m/s
+    roll_v: float  # psi', rad/s
+    roll_sin: float
+    roll_cos: float
+
+
+class Contact(NamedTuple):
+    """Material of the contact and the train's speed."""
+
+    alpha_r: float  # of the restitution law, see `impact`
+    onset_bound: float  # least rate at an onset, m/s
+    friction: float  # mu
+    inverse_speed: float  # 1/V, s/m
+
+
+class PatchForces(NamedTuple):
+    """What one wheel's patch does to the wheelset, right-hand wheel, track axes."""
+
+    hysteresis: float  # chi/K now, s/m
+    y: float  # generalised forces, N, N, N m
+    z: float
+    psi: float
+    energy: float  # stored Hertz energy, J
+    impact: float  # power lost to hysteresis, W
+    creep: float  # power lost to creepage, W
+    spin: float  # power brought in by spin, W
+
+
+def closing_rate(patch: Patch, motion: WheelMotion) -> float:
+    """Rate of the penetration Z - G(Y, psi), vertical, m/s."""
+    return motion.height_v - patch.slope * motion.shift_v - patch.gap_psi * motion.roll_v
+
+
+def patch_forces(
+    penetration: float, patch: Patch, motion: WheelMotion, held: float, contact: Contact
+) -> PatchForces:
+    """Forces of one wheel's patch on the wheelset (Eqs. 5 to 8).
+
+    Parameters
+    ----------
+    penetration : float
+        Z - G, vertical, m; positive in contact.
+    patch : Patch
+    motion : WheelMotion
+    held : float
+        chi/K of this contact so far, s/m; 0 while open.
+    contact : Contact
+    """
+    slope = patch.slope
+    cos_gamma = 1.0 / math.sqrt(1.0 + slope * slope)
+    delta = max(penetration, 0.0) * cos_gamma
+    rate = closing_rate(patch, motion) * cos_gamma
+    held = hysteresis(penetration > 0.0, held, rate, contact.alpha_r, contact.onset_bound)
+    normal, elastic = normal_force(delta, rate, patch.stiffness, held)
+    # the contact point's arm follows from dG/dpsi = -(arm_y + tan(gamma) arm_z)
+    arm_z = patch.rail_z - motion.height
+    arm_y = -patch.gap_psi - slope * arm_z
+    sliding = cos_gamma * (
+        motion.shift_v - motion.roll_v * arm_z + slope * (motion.height_v + motion.roll_v * arm_y)
+    )
+    # angle from the axle: sin(gamma - psi)
+    sine = cos_gamma * (slope * motion.roll_cos - motion.roll_sin)
+    linear = linear_force(
+        patch.creep * delta,
+        patch.spin * delta * math.sqrt(delta),
+        sliding,
+        contact.inverse_speed,
+        sine,
+    )
+    factor = saturation(linear.creep + linear.spin, contact.friction * normal)
+    tangential = factor * (linear.creep + linear.spin)
+    down = normal * cos_gamma
+    across = tangential * cos_gamma
+    return PatchForces(
+        held,
+        down * slope + across,
+        across * slope - down,
+        down * patch.gap_psi + across * (slope * arm_y - arm_z),
+        0.4 * elastic * delta,
+        (normal - elastic) * rate,
+        -factor * linear.creep * sliding,
+        factor * linear.spin * sliding,
+    )

@@ -1,0 +1,80 @@
+"""The energy audit of a run, from its rows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from railquake.march.packed import unpacked
+from railquake.physics.energy import EnergyAudit, Works, contact_residual, whole_residual
+
+if TYPE_CHECKING:
+    from railquake.assembly import System
+
+__all__ = ["audit"]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def audit(system: System, end: Array) -> EnergyAudit:
+    """Both balances of one run.
+
+    Parameters
+    ----------
+    system : System
+    end : array, shape (state rows, 1)
+    """
+    state, constant = system.layout.state, system.layout.constant
+    first, last, q = system.start[:, 0], end[:, 0], system.constants[:, 0]
+    dofs = system.layout.size.DOFS
+    entries = system.layout.size.VEHICLE_ENTRIES
+    suspension = unpacked(q[constant.STIFFNESS : constant.STIFFNESS + entries])
+    inverse_mass = q[constant.INVERSE_MASS : constant.INVERSE_MASS + dofs]
+    structure = system.structure
+    count = len(structure.mass)
+
+    def vehicle_x(s: Array) -> Array:
+        return s[state.VEHICLE_X : state.VEHICLE_X + dofs]
+
+    def stored(s: Array) -> tuple[float, float]:
+        """Kinetic and elastic energy."""
+        x = s[state.STRUCTURE_X : state.STRUCTURE_X + count]
+        v = s[state.STRUCTURE_V : state.STRUCTURE_V + count]
+        kinetic = 0.5 * float(v @ (structure.mass * v)) if structure.moves else 0.0
+        elastic = 0.5 * float(x @ structure.stiffness @ x) if structure.moves else 0.0
+        x, v = vehicle_x(s), s[state.VEHICLE_V : state.VEHICLE_V + dofs]
+        kinetic += 0.5 * float(v @ (v / inverse_mass))
+        elastic += 0.5 * float(x @ suspension @ x)
+        return kinetic, elastic
+
+    kinetic_start, elastic_start = stored(first)
+    kinetic_end, elastic_end = stored(last)
+    # a vehicle that has left the model took its kinetic energy along
+    gone = 0.0
+    if last[state.ON_TRACK] == 0.0:
+        x = vehicle_x(last)
+        gone = float(last[state.VEHICLE_ENERGY]) - 0.5 * float(x @ suspension @ x)
+    kinetic = kinetic_end - kinetic_start + gone
+    elastic = elastic_end - elastic_start
+    hertz = float(last[state.HERTZ_ENERGY] + last[state.HERTZ_LEFT] - first[state.HERTZ_ENERGY])
+    works = Works(
+        ground=float(last[state.WORK_GROUND]),
+        gravity=float(last[state.WORK_GRAVITY]),
+        hinge=float(last[state.HINGE_ENERGY]),
+        rayleigh=float(last[state.LOST_RAYLEIGH]),
+        dashpots=float(last[state.LOST_DASHPOTS]),
+        contact_vehicle=float(last[state.WORK_VEHICLE]),
+        contact_track=float(last[state.WORK_TRACK]),
+        impact=float(last[state.LOST_IMPACT]),
+        creep=float(last[state.LOST_CREEP]),
+        spin=float(last[state.SPIN_INPUT]),
+    )
+    return EnergyAudit(
+        kinetic=kinetic,
+        elastic=elastic,
+        hertz=hertz,
+        whole_residual=whole_residual(works, kinetic, elastic, structure.reaction),
+        contact_residual=contact_residual(works, hertz),
+        **works._asdict(),
+    )
