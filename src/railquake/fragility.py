@@ -18,15 +18,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from railquake.errors import InputError
+from railquake.measures import intensities
 
 if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = [
-    "MEASURES",
     "OUTCOMES",
     "Fragility",
-    "Measure",
     "compare_measures",
     "outcome",
     "write_csv",
@@ -51,35 +50,6 @@ ALL_EVENTS = "all events"
 NO_RISE = "no rise"
 UNBOUNDED = "interval not bounded by the data"
 
-
-@dataclass(frozen=True)
-class Measure:
-    """A measure that a fragility may be fitted against.
-
-    Parameters
-    ----------
-    column : str
-        Of the table of runs.
-    unit : str
-    demand_type, demand_unit : str
-        pelicun's names; see `write_csv`.
-    """
-
-    column: str
-    unit: str
-    demand_type: str
-    demand_unit: str
-
-
-MEASURES: Mapping[str, Measure] = {
-    "pbv": Measure("pbv_m_s", "m/s", "Peak Floor Velocity", "mps"),
-    "pba": Measure("pba_m_s2", "m/s2", "Peak Floor Acceleration", "mps2"),
-    "pbd": Measure("pbd_m", "m", "Peak Floor Displacement", "m"),
-    "pga": Measure("pga_m_s2", "m/s2", "Peak Ground Acceleration", "mps2"),
-    "pgv": Measure("pgv_m_s", "m/s", "Peak Ground Velocity", "mps"),
-    "sa_t1": Measure("sa_t1_m_s2", "m/s2", "Peak Spectral Acceleration", "mps2"),
-}
-"""Measures by their short names."""
 
 OUTCOMES = ("onset", "derailed")
 FINISHED = ("safe", "onset", "derailed")
@@ -124,7 +94,7 @@ class Fragility:
     event : str
         What may happen.
     measure : str
-        Short name of the measure (`MEASURES`), or what the caller calls it.
+        Name of the measure (`measures.intensities`), or what the caller calls it.
     theta : float
         Median: the measure at which the probability is one half, in the measure's unit.
     beta : float
@@ -275,7 +245,7 @@ class Fragility:
             Rows of a study; those that diverged, failed or did not converge are left aside.
         event : {"onset", "derailed"}
         measure : str
-            Short name (`MEASURES`) or a column's name.
+            Name (`measures.intensities`) or a column's name.
         **options
             See `fit`.
 
@@ -288,20 +258,21 @@ class Fragility:
         InputError
             If outcome or measure is not known, or there is too little to fit to.
         """
-        column = MEASURES[measure].column if measure in MEASURES else measure
+        declared = intensities()
+        column = declared[measure].key if measure in declared else measure
         if column not in table:
-            known = [name for name, item in MEASURES.items() if item.column in table]
+            known = [name for name, item in declared.items() if item.key in table]
             raise InputError(
                 f'fragility: the table has no measure "{measure}"; known are {", ".join(known)}'
             )
         rows = table[table["status"].isin(FINISHED)]
-        short = {item.column: name for name, item in MEASURES.items()}
+        names = {item.key: name for name, item in declared.items()}
         return cls.fit(
             rows[column].to_numpy(dtype=float),
             outcome(rows, event),
             rows["record"].to_numpy() if "record" in rows else None,
             event=event,
-            measure=short.get(column, measure),
+            measure=names.get(column, measure),
             **options,
         )
 
@@ -365,8 +336,9 @@ class Fragility:
 
     def _asked(self, value: Any, measure: Mapping[str, Any]) -> Array:
         names = {self.measure}
-        if self.measure in MEASURES:
-            names.add(MEASURES[self.measure].column)
+        declared = intensities()
+        if self.measure in declared:
+            names.add(declared[self.measure].key)
         if (value is None) == (not measure) or len(measure) > 1 or not set(measure) <= names:
             found = ", ".join(measure) if measure else "nothing" if value is None else "a number"
             raise InputError(
@@ -384,7 +356,7 @@ class Fragility:
 
 
 def compare_measures(
-    table: pd.DataFrame, event: str, measures: Iterable[str] = tuple(MEASURES), **options: Any
+    table: pd.DataFrame, event: str, measures: Iterable[str] | None = None, **options: Any
 ) -> list[Fragility]:
     """Curves against several measures on the same runs, the best by AIC first.
 
@@ -393,8 +365,9 @@ def compare_measures(
     table : DataFrame
         Rows of a study.
     event : {"onset", "derailed"}
-    measures : iterable of str
-        Those that the table lacks, or that have no two different positive values, are left out.
+    measures : iterable of str, optional
+        Names, all by default; those that the table lacks, or that have no two different positive
+        values, are left out.
     **options
         See `Fragility.fit`.
 
@@ -410,8 +383,9 @@ def compare_measures(
 
     rows = table[table["status"].isin(FINISHED)]
     columns = {}
-    for name in measures:
-        column = MEASURES[name].column
+    declared = intensities()
+    for name in declared if measures is None else measures:
+        column = declared[name].key
         if column in rows:
             values = pd.to_numeric(rows[column], errors="coerce")
             if values[values > 0.0].nunique() >= 2:
@@ -443,7 +417,7 @@ def write_csv(
         By the component's identifier (a dash in it becomes a point): its limit states in order of
         severity (onset, then derailed), all against one measure.
     first_period_s : float, optional
-        Period of the spectral acceleration, where a curve is against ``sa_t1``.
+        Period of the spectral acceleration, where a curve is against that.
 
     Raises
     ------
@@ -453,25 +427,28 @@ def write_csv(
     """
     import pandas as pd
 
+    declared = intensities()
     states = max((len(limits) for limits in curves.values()), default=0)
     rows = {}
     for identifier, limits in curves.items():
         names = {curve.measure for curve in limits}
-        if len(names) != 1 or not names <= set(MEASURES):
+        if len(names) != 1 or not names <= set(declared):
             raise InputError(
                 f"{path}: {identifier}: its curves must be against one measure of "
-                f"{', '.join(MEASURES)}, found {', '.join(sorted(names)) or 'none'}"
+                f"{', '.join(declared)}, found {', '.join(sorted(names)) or 'none'}"
             )
         name = next(iter(names))
-        demand = MEASURES[name].demand_type
-        if name == "sa_t1":
+        of = declared[name].intensity
+        assert of is not None  # by `intensities`
+        demand = of.demand_type
+        if of.has_period:
             if first_period_s is None:
-                raise InputError(f"{path}: {identifier}: sa_t1 needs its period, first_period_s")
+                raise InputError(f"{path}: {identifier}: {name} needs its period, first_period_s")
             demand = f"{demand}|{first_period_s:.3g}"
         row: dict[str, Any] = {
             "Incomplete": 0,
             "Demand-Type": demand,
-            "Demand-Unit": MEASURES[name].demand_unit,
+            "Demand-Unit": of.demand_unit,
             "Demand-Offset": 0,
             "Demand-Directional": 1,
         }

@@ -16,6 +16,7 @@ from railquake.findings.comparison import PairedComparison, compare_models
 from railquake.findings.correlation import Correlations, correlate
 from railquake.findings.lateral import LevelOff, force_ratio, level_off
 from railquake.findings.resampling import REPLICATES, Estimate, finished
+from railquake.measures import paired, short_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,15 +38,6 @@ BORNE_OUT, IN_PART, NOT_BORNE_OUT, NOT_TESTED = (
 
 SIGNIFICANT = 0.05
 CLOSE = (0.95, 1.05)  # a median ratio that an engineer would call equal
-QUANTITIES = (
-    "pbd_m", "pbv_m_s", "pba_m_s2", "top_rotation_peak_rad", "uplift_ratio",
-    "lateral_force_filtered_peak_n",
-)  # fmt: skip
-NAMES = {
-    "pbd_m": "PBD", "pbv_m_s": "PBV", "pba_m_s2": "PBA", "pga_m_s2": "PGA", "pgv_m_s": "PGV",
-    "sa_t1_m_s2": "Sa(T₁)", "top_rotation_peak_rad": "the top’s rotation",
-    "uplift_ratio": "uplift", "lateral_force_filtered_peak_n": "the lateral force",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -136,7 +128,7 @@ class Finding:
 
 
 def gather(
-    table: pd.DataFrame, friction: Any = math.nan, *, replicates: int = REPLICATES, seed: int = 0
+    table: pd.DataFrame, friction: Any = None, *, replicates: int = REPLICATES, seed: int = 0
 ) -> Evidence:
     """All statistics of a study.
 
@@ -144,8 +136,8 @@ def gather(
     ----------
     table : DataFrame
         Rows of a study; with ``sa_t1_m_s2`` if that is to be compared.
-    friction : float or array_like
-        mu of wheel on rail, of all runs or of each; NaN leaves the lateral force out.
+    friction : float or array_like, optional
+        mu of wheel on rail, of all runs or of each; by default the rows' own.
     replicates, seed : int
         Of the bootstrap.
 
@@ -172,7 +164,7 @@ def gather(
     comparisons = {
         (quantity, model, reference): compare_models(table, quantity, model, reference, **options)
         for model, reference in pairs
-        for quantity in QUANTITIES
+        for quantity in paired()
     }
     return Evidence(correlations, within, comparisons, levels, outcomes)
 
@@ -448,7 +440,7 @@ def _velocity_is_better(evidence: Evidence) -> Finding:
         for difference in over_all.differences:
             inside = within.against(difference.other) if within is not None else None
             signs = [difference.spearman] + ([inside.spearman] if inside is not None else [])
-            label = f"{NAMES.get(difference.other, difference.other)} ({PIERS[name]})"
+            label = f"{short_name(difference.other)} ({PIERS[name]})"
             if any(s.below(0.0) for s in signs):
                 worse.append(label)
             elif any(s.above(0.0) for s in signs):
@@ -456,13 +448,13 @@ def _velocity_is_better(evidence: Evidence) -> Finding:
             else:
                 open_ones.append(label)
         listed = ", ".join(
-            f"{NAMES.get(d.other, d.other)} {interval(d.spearman)}" for d in over_all.differences
+            f"{short_name(d.other)} {interval(d.spearman)}" for d in over_all.differences
         )
         if listed:
             words.append(f"{PIERS[name]}: ρ of PBV less that of {listed}")
         if within is not None and within.differences:
             listed = ", ".join(
-                f"{NAMES.get(d.other, d.other)} {interval(d.spearman)}" for d in within.differences
+                f"{short_name(d.other)} {interval(d.spearman)}" for d in within.differences
             )
             words.append(f"within a level: {listed}")
     if not words:
