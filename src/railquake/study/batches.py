@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import threading
-from collections import OrderedDict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.memory import Bounded
 from railquake.run.many import failed_row, run_here
 from railquake.study.design import Design
 
@@ -45,24 +45,7 @@ class Batch:
     rows: tuple[int, ...]
 
 
-_DESIGNS: OrderedDict[str, Design] = OrderedDict()
-_DESIGNS_MOST = 4
-_DESIGNS_LOCK = threading.Lock()
-
-
-def _design_of(batch: Batch) -> Design:
-    with _DESIGNS_LOCK:
-        known = _DESIGNS.get(batch.key)
-    return known or _keep_design(batch.key, Design(batch.study, batch.time_step))
-
-
-def _keep_design(key: str, design: Design) -> Design:
-    with _DESIGNS_LOCK:
-        _DESIGNS[key] = design
-        _DESIGNS.move_to_end(key)
-        while len(_DESIGNS) > _DESIGNS_MOST:
-            _DESIGNS.popitem(last=False)
-    return design
+_DESIGNS = Bounded[str, Design](4)
 
 
 def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
@@ -80,7 +63,7 @@ def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
         Row and measures.  A run that cannot be made has the status ``failed`` and its ``error``.
     """
     stop = threading.Event() if stop is None else stop
-    design = _design_of(batch)
+    design = _DESIGNS.get(batch.key, lambda: Design(batch.study, batch.time_step))
     done: Ended = []
 
     def scenarios() -> Iterator[tuple[int, Scenario]]:
@@ -100,9 +83,8 @@ def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
 @contextmanager
 def kept_design(key: str, design: Design) -> Iterator[None]:
     """Let the tasks of this process find the design; forget it afterwards."""
-    _keep_design(key, design)
+    _DESIGNS.put(key, design)
     try:
         yield
     finally:
-        with _DESIGNS_LOCK:
-            _DESIGNS.pop(key, None)
+        _DESIGNS.forget(key)

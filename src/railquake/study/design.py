@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from collections import OrderedDict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
@@ -21,6 +19,7 @@ from railquake.inputs.scenario import (
     scenario_from_dict,
 )
 from railquake.inputs.toml import with_overrides
+from railquake.memory import Bounded
 from railquake.study.axes import Axis, DistributionAxis, sampled
 from railquake.suite import Suite, SuiteMember
 
@@ -107,10 +106,9 @@ class Design:
         self.drawn = [axis for axis in study.axes if isinstance(axis, DistributionAxis)]
         self.samples = study.sampling.count if study.sampling is not None else 1
         self._moves = any(map(_is_motion, self._paths()))
-        self._sections: OrderedDict[tuple[str, str], tuple[Any, str]] = OrderedDict()
-        self._solvers: OrderedDict[tuple[str, ...], tuple[Any, str]] = OrderedDict()
-        self._motions: OrderedDict[tuple[int, str], Motion | None] = OrderedDict()
-        self._lock = Lock()
+        self._sections = Bounded[tuple[str, str], tuple[Any, str]](_REMEMBERED)
+        self._solvers = Bounded[tuple[str, ...], tuple[Any, str]](_REMEMBERED)
+        self._motions = Bounded[tuple[int, str], Motion](_REMEMBERED)
 
     def _paths(self) -> Iterator[str]:
         for axis in self.study.axes:
@@ -225,41 +223,36 @@ class Design:
 
     def _section(self, key: str, changes: Mapping[str, Any]) -> tuple[Any, str]:
         """A part of the base case with some changes and its fingerprint, made once."""
-        name = (key, repr(changes))
-        with self._lock:
-            if name in self._sections:
-                self._sections.move_to_end(name)
-                return self._sections[name]
-        tables = {**self._base, "motion": _ANY_MOTION}
-        made = scenario_from_dict(tables, overrides=changes, where=f"{self.where}: base")
-        section = getattr(made, key)
-        result = section, fingerprint(section)
-        _remember(self._sections, name, result, self._lock)
-        return result
+
+        def make() -> tuple[Any, str]:
+            tables = {**self._base, "motion": _ANY_MOTION}
+            made = scenario_from_dict(tables, overrides=changes, where=f"{self.where}: base")
+            section = getattr(made, key)
+            return section, fingerprint(section)
+
+        return self._sections.get((key, repr(changes)), make)
 
     def _settled(self, scenario: Scenario, name: tuple[str, ...]) -> tuple[Any, str]:
         """The solver with the time step that was chosen, found once for all motions."""
-        assert self.time_step is not None  # by the caller
-        with self._lock:
-            if name in self._solvers:
-                return self._solvers[name]
-        solver = self.time_step.settled(scenario).solver
-        result = solver, fingerprint(solver)
-        _remember(self._solvers, name, result, self._lock)
-        return result
+        step = self.time_step
+        assert step is not None  # by the caller
+
+        def make() -> tuple[Any, str]:
+            solver = step.settled(scenario).solver
+            return solver, fingerprint(solver)
+
+        return self._solvers.get(name, make)
 
     def _motion(self, point: Point) -> Motion | None:
         """A member's motion with an axis's changes, validated once."""
-        name = (point.member, point.motion_key)
-        with self._lock:
-            if name in self._motions:
-                return self._motions[name]
+        if not point.motion:
+            return None
         where = f"{self.where}: motion"
         if self.study.suite is not None:
             where = f"{self.where}: suite: {point.record}"
-        motion = validated(Motion, point.motion, where) if point.motion else None
-        _remember(self._motions, name, motion, self._lock)
-        return motion
+        return self._motions.get(
+            (point.member, point.motion_key), lambda: validated(Motion, point.motion, where)
+        )
 
     def _in_full(self, point: Point) -> Scenario:
         tables = dict(self._base)
@@ -310,13 +303,6 @@ class Design:
 
 def _is_motion(path: str) -> bool:
     return path.startswith("motion.")
-
-
-def _remember(store: OrderedDict[Any, Any], key: Any, value: Any, lock: Lock) -> None:
-    with lock:
-        store[key] = value
-        while len(store) > _REMEMBERED:
-            store.popitem(last=False)
 
 
 def _motion_name(table: Mapping[str, Any]) -> str:
