@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.errors import InputError
-from railquake.files import reason
+from railquake.files import reason, whole_file
 
 if TYPE_CHECKING:
     from rich.progress import Progress, ProgressColumn
@@ -135,15 +135,12 @@ def _is_number(text: str) -> bool:
 
 
 def write_file(path: Path, write: Callable[[Path], Any]) -> None:
-    """Write a file under a temporary name and move it into its place."""
-    part = path.with_name(f".{path.name}.part")
+    """Write a file, whole or not at all."""
     try:
-        write(part)
-        part.replace(path)
+        with whole_file(path) as part:
+            write(part)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {reason(error)}") from None
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:
