@@ -18,11 +18,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from railquake.errors import InputError
+from railquake.messages import reason
 
 __all__ = [
     "prepare_folder",
     "random_name",
-    "reason",
     "set_aside",
     "uninterrupted",
     "whole_file",
@@ -48,11 +48,6 @@ def prepare_folder(folder: Path) -> None:
             pass
     except OSError as error:
         raise InputError(f"--out {folder}: cannot be written: {reason(error)}") from None
-
-
-def reason(error: OSError) -> str:
-    """Why, on one line."""
-    return error.strerror or " ".join(str(error).split())
 
 
 def random_name(suffix: str = "") -> str:

@@ -9,7 +9,8 @@ from typing import Any
 from railquake.calibration.calibrate import Calibration, LoopFacts, loop_facts
 from railquake.calibration.preset import preset_text
 from railquake.errors import InputError
-from railquake.files import reason, whole_folder
+from railquake.files import whole_folder
+from railquake.messages import reason
 from railquake.plots.calibration import (
     HistoryPair,
     ParameterMark,

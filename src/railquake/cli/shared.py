@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.errors import InputError
-from railquake.files import reason, whole_file
+from railquake.files import whole_file
+from railquake.messages import reason, unreadable
 
 if TYPE_CHECKING:
     from rich.progress import Progress, ProgressColumn
@@ -103,8 +104,7 @@ def read_column(path: Path, name: str) -> Any:
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "is not text"
-        raise InputError(f"{path}: cannot be read: {reason}") from None
+        raise unreadable(path, error) from None
     column, values = 0, []
     started = False
     for number, line in enumerate(lines, 1):

@@ -19,6 +19,7 @@ from railquake.cli.shared import (
     write_file,
 )
 from railquake.errors import InputError
+from railquake.messages import did_you_mean
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
@@ -96,7 +97,6 @@ def presets(
 
     Example: railquake presets bart-berkeley
     """
-    from railquake.inputs.model import did_you_mean
     from railquake.inputs.presets import list_presets
 
     known = list_presets()

@@ -11,10 +11,11 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from railquake.errors import InputError
-from railquake.inputs.model import InputModel, did_you_mean
+from railquake.inputs.model import InputModel
 from railquake.inputs.presets import KINDS
 from railquake.inputs.scenario import Scenario
-from railquake.inputs.units import Quantity, Sign, shown, to_si
+from railquake.inputs.units import Quantity, Sign, to_si
+from railquake.messages import did_you_mean, shown
 
 __all__ = ["Input", "input_at"]
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, TypeVar
 
 from pydantic import (
@@ -19,7 +18,8 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from railquake.errors import InputError
-from railquake.inputs.units import Quantity, shown
+from railquake.inputs.units import Quantity
+from railquake.messages import did_you_mean, shown, toml_type
 
 Name = Annotated[str, StringConstraints(strict=True, min_length=1, pattern=r"^\S(.*\S)?$")]
 Text = StrictStr
@@ -27,33 +27,6 @@ Flag = StrictBool
 Integer = StrictInt
 
 ModelType = TypeVar("ModelType", bound="InputModel")
-
-
-def did_you_mean(word: str, known: Sequence[str]) -> str:
-    """Say which of the known words is nearest, or list them all.
-
-    Parameters
-    ----------
-    word : str
-        What was found.
-    known : sequence of str
-        What would have been accepted.
-    """
-    near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1)
-    listed = ", ".join(known)
-    if near:
-        best = next(k for k in known if k.lower() == near[0])
-        return f'did you mean "{best}"? (known: {listed})'
-    return f"known: {listed}"
-
-
-def toml_type(value: object) -> str:
-    """Name a value's type as the case file's author knows it."""
-    if isinstance(value, Mapping):
-        return "a table"
-    if isinstance(value, list | tuple):
-        return "a list"
-    return shown(value)
 
 
 class InputModel(BaseModel):

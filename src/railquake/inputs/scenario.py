@@ -17,11 +17,9 @@ from pydantic import Field, ValidationError, model_validator
 from railquake.errors import InputError
 from railquake.inputs.model import (
     InputModel,
-    did_you_mean,
     field_path,
     inconsistent,
     one_line,
-    toml_type,
 )
 from railquake.inputs.motion import Motion, motion_of_samples
 from railquake.inputs.presets import KINDS, resolved_section, with_absolute_paths
@@ -30,6 +28,7 @@ from railquake.inputs.support import AtGrade, Pier, PrescribedTrack, Support
 from railquake.inputs.toml import dumps, is_path, read_toml, with_overrides
 from railquake.inputs.vehicle import Vehicle
 from railquake.inputs.wheelrail import WheelRail
+from railquake.messages import did_you_mean, refuse_unknown, toml_type, unreadable
 
 if TYPE_CHECKING:
     from railquake.inputs.ground_motion import GroundMotion
@@ -228,7 +227,7 @@ def _file_hash(path: str) -> str:
         found = os.stat(path)
         return _hash_of(path, found.st_mtime_ns, found.st_size)
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise unreadable(path, error) from error
 
 
 @lru_cache(maxsize=4096)
@@ -293,9 +292,8 @@ def scenario_from_dict(
     base = Path.cwd() if folder is None else Path(folder)
     tables = with_overrides(data, overrides, f"{where}: --set")
     sections = list(Scenario.model_fields)
+    refuse_unknown(tables, sections, f"{where}: ")
     for key, value in tables.items():
-        if key not in sections:
-            raise InputError(f"{where}: {key}: unknown key; {did_you_mean(key, sections)}")
         if not isinstance(value, Mapping):
             advice = f"; write e.g. {_SUGGESTIONS[key]}" if key in _SUGGESTIONS else ""
             raise InputError(f"{where}: {key}: must be a table, found {toml_type(value)}{advice}")
@@ -330,7 +328,7 @@ def _of_its_kind(table: dict[str, Any], where: str) -> dict[str, Any]:
     kind = table.get("kind", "pier")
     if not isinstance(kind, str) or kind not in models:
         shown = toml_type(kind)
-        advice = did_you_mean(kind if isinstance(kind, str) else "", list(models))
+        advice = did_you_mean(kind, models)
         raise InputError(f"{where}.kind: unknown kind of support {shown}; {advice}")
     fields = models[kind].model_fields
     elsewhere = {key for model in models.values() for key in model.model_fields} - set(fields)

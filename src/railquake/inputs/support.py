@@ -23,6 +23,7 @@ from railquake.inputs.units import (
     PositiveSecondMomentOfArea,
     Quantity,
 )
+from railquake.messages import unreadable
 
 if TYPE_CHECKING:
     import numpy as np
@@ -181,7 +182,7 @@ def read_track_motion(path: str | Path) -> TrackMotion:
                 if any(cell.strip() for cell in row)
             ]
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise unreadable(path, error) from error
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: is not a CSV text file: {error}") from error
     header = lines[0][1] if lines else []

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
+from railquake.messages import unreadable
 
 # Of these keys a table takes one; an override by one of them removes the others from the preset.
 ALTERNATIVES = (
@@ -47,7 +48,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     try:
         return tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise unreadable(path, error) from error
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: is not a UTF-8 text file: {error.reason}") from error
     except (ValueError, RecursionError) as error:

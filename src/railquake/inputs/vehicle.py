@@ -13,7 +13,6 @@ from railquake.inputs.model import (
     Integer,
     Name,
     Text,
-    did_you_mean,
     inconsistent,
     validated,
 )
@@ -26,6 +25,7 @@ from railquake.inputs.units import (
     PositiveRollInertia,
     PositiveStiffness,
 )
+from railquake.messages import did_you_mean
 
 Direction = Literal["lateral", "vertical"]
 

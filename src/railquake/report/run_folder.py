@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.files import reason, whole_folder
+from railquake.files import whole_folder
+from railquake.messages import reason
 from railquake.run.assess import assess
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from railquake.errors import InputError
-from railquake.files import prepare_folder, reason, whole_file, whole_folder
+from railquake.files import prepare_folder, whole_file, whole_folder
 from railquake.fragility import OUTCOMES, write_csv
+from railquake.messages import reason
 from railquake.report import (
     curves,
     decoupled,

@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 
 from railquake.assembly import System, assemble
-from railquake.errors import InputError, on_one_line
+from railquake.errors import InputError
+from railquake.messages import on_one_line
 from railquake.physics import state
 from railquake.physics.energy import audit
 from railquake.physics.kernel import lockstep_target

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.messages import first_line
 from railquake.run.many import (
     Device,
     choose_time_step,
@@ -217,7 +218,7 @@ def _run_all(
     except Exception as error:
         if stop is not None:
             raise  # in this process it is a fault of the program
-        text = (str(error).splitlines() or [""])[0]
+        text = first_line(error)
         raise InputError(
             f"study: the workers failed ({type(error).__name__}{': ' if text else ''}{text}); "
             "finished rows are kept: see that they run this version of railquake and reach its "

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.inputs.model import did_you_mean, toml_type
 from railquake.inputs.presets import KINDS, with_absolute_paths
 from railquake.inputs.scenario import Overrides, Scenario
 from railquake.inputs.toml import is_path, merged, read_toml, with_overrides
-from railquake.inputs.units import shown
+from railquake.messages import did_you_mean, refuse_unknown, shown, toml_type
 from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
 from railquake.study.parsing import parse_axes, parse_sampling
@@ -131,9 +130,7 @@ class Study:
         InputError
             Naming the field, what was found and what to write.
         """
-        for key in tables:
-            if key not in (*_SECTIONS, "railquake"):
-                raise InputError(f"{where}: {key}: unknown key; {did_you_mean(key, _SECTIONS)}")
+        refuse_unknown((key for key in tables if key != "railquake"), _SECTIONS, f"{where}: ")
         if "base" not in tables:
             raise InputError(
                 f'{where}: base: missing; write e.g. [base] case = "case.toml", or the tables of a '
@@ -322,11 +319,8 @@ def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:
     tables = dict(base)
     case = tables.pop("case", None)
     sections = list(Scenario.model_fields)
+    refuse_unknown(tables, ["case", *sections], f"{where}.")
     for key, table in tables.items():
-        if key not in sections:
-            raise InputError(
-                f"{where}.{key}: unknown key; {did_you_mean(key, ['case', *sections])}"
-            )
         if not isinstance(table, Mapping):
             raise InputError(f"{where}.{key}: must be a table, found {toml_type(table)}")
     tables = _absolute(tables, folder)

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.files import prepare_folder, random_name, reason, set_aside, whole_file
+from railquake.files import prepare_folder, random_name, set_aside, whole_file
 from railquake.inputs.toml import dumps, read_toml
-from railquake.inputs.units import shown
+from railquake.messages import reason, shown
 from railquake.run.time_step import TimeStep
 from railquake.study.table import distinct
 

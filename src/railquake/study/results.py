@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from railquake.errors import InputError
 from railquake.inputs.toml import read_toml
+from railquake.messages import no_folder
 from railquake.study.folder import STUDY_FILE, TABLE_FILE, ResultsFolder, no_note, read_parquet
 from railquake.study.table import distinct, table_schema, to_pandas
 
@@ -121,8 +122,7 @@ def open_results(folder: str | Path) -> StudyResults:
 
     folder = Path(folder)
     if not folder.is_dir():
-        what = "is no folder" if folder.exists() else "there is no such folder"
-        raise InputError(f"{folder}: {what}; give the one that railquake study wrote")
+        raise no_folder(folder, "give the one that railquake study wrote")
     file = folder / STUDY_FILE
     if not file.exists():
         what = "is empty" if not any(folder.iterdir()) else f"holds no study (no {STUDY_FILE})"

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from railquake.errors import InputError, on_one_line
-from railquake.files import reason, whole_file, whole_folder
+from railquake.errors import InputError
+from railquake.files import whole_file, whole_folder
+from railquake.messages import on_one_line, reason
 from railquake.validation.comparison import Result
 from railquake.validation.runner import Report, is_green
 

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
-from railquake.inputs.model import did_you_mean, toml_type
 from railquake.inputs.toml import is_path, merged, read_toml
 from railquake.inputs.wheelrail import spec_from_text
+from railquake.messages import did_you_mean, toml_type
 
 KINDS = ("vehicle", "support", "wheelrail")
 _DEEPEST_CHAIN = 8
