@@ -10,15 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.inputs.identity import fingerprint, hash_of_fingerprints
+from railquake.inputs.layers import with_overrides
+from railquake.inputs.marks import Place
 from railquake.inputs.model import validated
 from railquake.inputs.motion import Motion
-from railquake.inputs.scenario import (
-    Scenario,
-    fingerprint,
-    hash_of_fingerprints,
-    scenario_from_dict,
-)
-from railquake.inputs.toml import with_overrides
+from railquake.inputs.scenario import Scenario, scenario_from_dict
 from railquake.memory import Bounded
 from railquake.study.axes import Axis, DistributionAxis, sampled
 from railquake.suite import Suite, SuiteMember
@@ -29,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Design", "Point"]
 
-_SECTIONS = ("vehicle", "support", "wheelrail", "solver")
+_SECTIONS = tuple(key for key in Scenario.model_fields if key != "motion")
 _NO_SECTION: dict[str, Any] = {}
 _REMEMBERED = 512  # sections, and motions
 _MOST_CHECKED = 4096  # combinations of values that are tried before anything runs
@@ -164,7 +161,7 @@ class Design:
             changed = {path: changes.pop(path) for path in list(changes) if _is_motion(path)}
             if changed:
                 key = repr(changed)
-                table = with_overrides({"motion": table}, changed)["motion"]
+                table = with_overrides({"motion": table}, changed, Place((Scenario,)))["motion"]
                 record = _motion_name(table) if self.study.suite is None else record
         return Point(row, record, level, own * factor, member_index, table, key, changes, labels)
 
@@ -206,7 +203,7 @@ class Design:
             by_section.setdefault(path.partition(".")[0], {})[path] = value
         parts = {key: self._section(key, by_section.get(key, _NO_SECTION)) for key in _SECTIONS}
         motion = self._motion(point)
-        if motion is None and parts["support"][0].kind != "prescribed":
+        if motion is None and parts["support"][0].needs_motion:
             self._in_full(point)  # says what is missing
         if motion is not None:
             motion = motion.model_copy(update={"scale": point.scale})

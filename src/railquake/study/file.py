@@ -9,10 +9,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pydantic import create_model
+
 from railquake.errors import InputError
-from railquake.inputs.presets import KINDS, with_absolute_paths
-from railquake.inputs.scenario import Overrides, Scenario
-from railquake.inputs.toml import is_path, merged, read_toml, with_overrides
+from railquake.inputs.layers import Overrides, merged, with_absolute_paths, with_overrides
+from railquake.inputs.marks import Place
+from railquake.inputs.scenario import Scenario
+from railquake.inputs.toml import is_path, read_toml
 from railquake.messages import did_you_mean, refuse_unknown, shown, toml_type
 from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
@@ -29,6 +32,9 @@ __all__ = ["AUTO", "Study", "load_study"]
 
 AUTO = "auto"  # a time step that is chosen for the study
 _SECTIONS = ("base", "suite", "axes", "sampling")
+_CASE = Place((Scenario,))
+# An axis' name is the path of an input: what excludes each other in a case does so here, too.
+_FILE = Place((create_model("StudyFile", base=(Scenario, ...), axes=(Scenario, ...)),))
 _SUITE_KEYS = ("manifest", "levels", "name", "members")
 _MOTIONS = ("motion.record", "motion.synthetic", "motion.acceleration")
 
@@ -304,7 +310,7 @@ def load_study(path: str | Path, overrides: Overrides = ()) -> Study:
     InputError
         Naming the file and the line or field, what was found and what to write.
     """
-    tables = with_overrides(read_toml(path), overrides, f"{path}: --set")
+    tables = with_overrides(read_toml(path), overrides, _FILE, f"{path}: --set")
     return Study.from_dict(tables, Path(path).absolute().parent, where=str(path))
 
 
@@ -323,7 +329,7 @@ def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:
     for key, table in tables.items():
         if not isinstance(table, Mapping):
             raise InputError(f"{where}.{key}: must be a table, found {toml_type(table)}")
-    tables = _absolute(tables, folder)
+    tables = with_absolute_paths(tables, folder, _CASE)
     if case is None:
         return tables
     if not isinstance(case, str):
@@ -333,18 +339,7 @@ def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:
     for key, table in found.items():
         if not isinstance(table, Mapping):
             raise InputError(f"{path}: {key}: must be a table, found {toml_type(table)}")
-    return merged(_absolute(found, path.parent), tables)
-
-
-def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    result = {}
-    for key, table in tables.items():
-        section = with_absolute_paths(key, table, folder)
-        preset = section.get("preset")
-        if key in KINDS and isinstance(preset, str) and is_path(preset):
-            section["preset"] = str((folder / preset).absolute())
-        result[key] = section
-    return result
+    return merged(with_absolute_paths(found, path.parent, _CASE), tables, _CASE)
 
 
 def _suite(suite: Suite | str | Path | None, folder: Path) -> Suite | str | None:

@@ -9,7 +9,6 @@ from typing import Any
 
 from railquake.errors import InputError
 from railquake.inputs.fields import Input, input_at
-from railquake.inputs.toml import is_path
 from railquake.inputs.units import to_si
 from railquake.messages import did_you_mean, shown, toml_type
 from railquake.study.axes import Axis, DistributionAxis, ListAxis, Variant, VariantAxis
@@ -18,12 +17,6 @@ from railquake.study.distributions import DISTRIBUTIONS, METHODS, Sampling
 __all__ = ["parse_axes", "parse_sampling"]
 
 MOST_SAMPLES = 10_000_000
-# Paths whose texts name files where they have a folder or an ending.
-_FILES = (
-    "vehicle.preset", "support.preset", "wheelrail.preset", "support.file", "motion.record",
-    "motion.vertical", "wheelrail.wheel", "wheelrail.rail", "wheelrail.wheel.file",
-    "wheelrail.rail.file",
-)  # fmt: skip
 
 
 def parse_axes(tables: Any, folder: Path, where: str) -> tuple[Axis, ...]:
@@ -106,12 +99,7 @@ def _value(known: Input, value: Any, folder: Path, where: str) -> Any:
     """A value in SI units, its path absolute."""
     if isinstance(value, Path):
         value = str(value)
-    value = known.in_si(value, where)
-    if known.field_path in _FILES and isinstance(value, str):
-        needs_ending = not known.field_path.endswith((".file", ".record", ".vertical"))
-        if not needs_ending or is_path(value):
-            return str((folder / value).absolute())
-    return value
+    return known.absolute(known.in_si(value, where), folder)
 
 
 def _variant_axis(name: str, items: Sequence[Any], folder: Path, where: str) -> VariantAxis:
