@@ -16,7 +16,7 @@ from railquake.study.design import Design
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
     from railquake.run.time_step import TimeStep
-    from railquake.study.file import Study
+    from railquake.study.file import StudyInputs
 
 __all__ = ["Batch", "Ended", "kept_design", "run_batch"]
 
@@ -32,7 +32,7 @@ class Batch:
     ----------
     key : str
         Tells studies apart within a process.
-    study : Study
+    study : StudyInputs
         Its suite loaded.
     time_step : TimeStep or None
         Where the study leaves it open.
@@ -40,7 +40,7 @@ class Batch:
     """
 
     key: str
-    study: Study
+    study: StudyInputs
     time_step: TimeStep | None
     rows: tuple[int, ...]
 

@@ -22,7 +22,7 @@ from railquake.suite import Suite, SuiteMember
 
 if TYPE_CHECKING:
     from railquake.run.time_step import TimeStep
-    from railquake.study.file import Study
+    from railquake.study.file import StudyInputs
 
 __all__ = ["Design", "Point"]
 
@@ -76,13 +76,13 @@ class Design:
 
     Parameters
     ----------
-    study : Study
+    study : StudyInputs
         Its suite loaded.
     time_step : TimeStep, optional
         What was chosen where the study leaves it open; without it scenarios leave it open, too.
     """
 
-    def __init__(self, study: Study, time_step: TimeStep | None = None) -> None:
+    def __init__(self, study: StudyInputs, time_step: TimeStep | None = None) -> None:
         assert study.suite is None or isinstance(study.suite, Suite), "the suite is loaded first"
         self.study = study
         self.where = study.where

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from railquake.run.many import MakeLanes
     from railquake.run.time_step import TimeStep
-    from railquake.study.file import Study
+    from railquake.study.file import StudyInputs
 
 __all__ = ["StudyProgress", "run_study"]
 
@@ -70,7 +70,7 @@ class StudyProgress:
 
 
 def run_study(
-    study: Study,
+    study: StudyInputs,
     out: Path,
     *,
     jobs: int | None = None,
@@ -82,7 +82,7 @@ def run_study(
     shard: tuple[int, int] | str | None = None,
     device: Device = "cpu",
 ) -> pd.DataFrame:
-    """Run a study, or what is left of it; see `Study.run`."""
+    """Run a study, or what is left of it; see `railquake.Study.run`."""
     import pyarrow as pa
     import pyarrow.compute as pc
 

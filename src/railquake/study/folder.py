@@ -19,7 +19,7 @@ from railquake.study.table import distinct
 if TYPE_CHECKING:
     import pyarrow as pa
 
-    from railquake.study.file import Study
+    from railquake.study.file import StudyInputs
 
 __all__ = ["STUDY_FILE", "TABLE_FILE", "ResultsFolder", "no_note", "read_parquet"]
 
@@ -62,7 +62,7 @@ class ResultsFolder:
         self.parts = path / PARTS
         self.kept = 0  # rows of this execution that are on the disk
 
-    def prepare(self, study: Study, notify: Callable[[str], None]) -> None:
+    def prepare(self, study: StudyInputs, notify: Callable[[str], None]) -> None:
         """Make the folder, or make sure that it holds results of this very study.
 
         Raises
