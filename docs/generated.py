@@ -4,13 +4,38 @@ import typing
 
 from pydantic_core import PydanticUndefined
 
-from railquake.inputs import hinge, motion, solver, support, vehicle, wheelrail
+from railquake.inputs import motion, solver, support, vehicle, wheelrail
 from railquake.inputs.ground_motion import SyntheticParameters
+from railquake.inputs.layers import FromPreset
+from railquake.inputs.marks import AsText, ByName, KnownLaw, marked, models_in
 from railquake.inputs.presets import list_presets
 from railquake.inputs.schema import json_schema as schema
 from railquake.inputs.units import DIMENSIONS, UNIT_DEFINITIONS, Quantity
 
 __all__ = ["case_file", "channels", "measures", "presets", "schema"]
+
+# What the page adds to the title and the words of some kinds of support.
+KINDS_OF_SUPPORT = {
+    "pier": ("", ", the default. `preset` as above."),
+    "at-grade": (
+        ", no structure",
+        ". A pier's keys beside it are left out without complaint, so that one case serves for "
+        "both.",
+    ),
+    "prescribed": (", known motion", "."),
+}
+TABLES_OF_SUPPORTS = {"bouc_wen": "See [Bouc-Wen hinge](../theory/boucwen.md)."}
+
+
+def supports():
+    """The section of every kind of support, and those of its tables."""
+    for kind, model in support.SUPPORTS.items():
+        title, note = KINDS_OF_SUPPORT.get(kind, (f", {kind}", "."))
+        yield f"[support]{title}", model, f'With `kind = "{kind}"`{note}'
+        for key, field in model.model_fields.items():
+            for table in models_in(field.annotation):
+                yield f"[support.{key}]", table, TABLES_OF_SUPPORTS.get(key, "")
+
 
 # Where each model stands in a case file, and what the page says of it.
 SECTIONS = (
@@ -18,15 +43,7 @@ SECTIONS = (
     ("[vehicle.bodies.NAME]", vehicle.Body, "One table for each rigid body."),
     ("[vehicle.springs.NAME]", vehicle.Spring, "Between points of two bodies."),
     ("[vehicle.dashpots.NAME]", vehicle.Dashpot, "Between points of two bodies."),
-    ("[support]", support.Pier, 'With `kind = "pier"`, the default. `preset` as above.'),
-    ("[support.bouc_wen]", hinge.BoucWenHinge, "See [Bouc-Wen hinge](../theory/boucwen.md)."),
-    (
-        "[support], no structure",
-        support.AtGrade,
-        'With `kind = "at-grade"`. A pier\'s keys beside it are left out without complaint, so '
-        "that one case serves for both.",
-    ),
-    ("[support], known motion", support.PrescribedTrack, 'With `kind = "prescribed"`.'),
+    *supports(),
     (
         "[wheelrail]",
         wheelrail.WheelRail,
@@ -42,9 +59,13 @@ SECTIONS = (
     ("[motion]", motion.Motion, "One of `record`, `synthetic` and `acceleration`."),
     ("[solver]", solver.Solver, ""),
 )
-# These may build on a preset; these are named by their table.
-PRESET = (vehicle.Vehicle, support.Pier, wheelrail.WheelRail)
-NAMED = (vehicle.Body, vehicle.Spring, vehicle.Dashpot)
+# These are named by their table.
+NAMED = [
+    item
+    for _, model, _ in SECTIONS
+    for key in marked(model, ByName)
+    for item in models_in(model.model_fields[key].annotation)
+]
 
 
 def table(head, rows):
@@ -65,6 +86,10 @@ def form(annotation, metadata=()):
             sign = "" if mark.sign == "any" else f", {mark.sign}"
             example = "" if mark.dimension == "number" else f"; `{mark.example}`"
             return f"{what.removeprefix('plain ')}{sign}{example}"
+        if isinstance(mark, KnownLaw):
+            return " or ".join(f'`"{law}"`' for law in mark.family.built_in())
+        if isinstance(mark, AsText):
+            return "text or table"
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is typing.Annotated:
         return form(arguments[0], arguments[1:])
@@ -72,8 +97,6 @@ def form(annotation, metadata=()):
         return " or ".join(f'`"{choice}"`' for choice in arguments)
     if origin is tuple:
         return "list"
-    if annotation is wheelrail.ProfileSpec:
-        return "text or table"
     if origin is dict or hasattr(annotation, "model_fields"):
         return "table"
     if arguments:
@@ -103,7 +126,7 @@ def fields(model):
         for name, field in model.model_fields.items()
         if not (name == "name" and model in NAMED)
     ]
-    if model in PRESET:
+    if issubclass(model, FromPreset):
         rows.insert(0, ("`preset`", "text", "", "A built-in set, or the path of a TOML file"))
     return [(key, kind, value, text or "") for key, kind, value, text in rows]
 

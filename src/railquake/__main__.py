@@ -2,7 +2,7 @@
 
 import sys
 
-from railquake.stopping import STOPPED, STOPPED_TEXT, stop_requests_heard
+from railquake.cli.stopping import STOPPED, STOPPED_TEXT, stop_requests_heard
 
 
 def main() -> int:

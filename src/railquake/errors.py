@@ -1,4 +1,4 @@
-"""The one error that a user can cause, and all others on one line."""
+"""The one error that a user can cause."""
 
 
 class InputError(ValueError):
@@ -8,8 +8,3 @@ class InputError(ValueError):
     what was found there and what to do about it.  The command line prints it and exits with
     status 2.
     """
-
-
-def on_one_line(error: Exception) -> str:
-    """Kind and message of an error that nobody foresaw, on one line."""
-    return " ".join(f"{type(error).__name__}: {error}".split())

@@ -1,14 +1,33 @@
-"""Folders for results: whether they can be written is known before a long run."""
+"""Writing files and folders: whole or not at all, and known to be possible before a long run.
+
+What is written lies under a hidden, random name that ends with ``.part`` until its writer is done,
+and is then moved into its place: whoever reads sees the former state or the new one, and an
+interruption leaves nothing behind.
+"""
 
 from __future__ import annotations
 
 import os
+import secrets
+import shutil
+import signal
 import tempfile
+import threading
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from railquake.errors import InputError
+from railquake.messages import reason
 
-__all__ = ["prepare_folder", "reason"]
+__all__ = [
+    "prepare_folder",
+    "random_name",
+    "set_aside",
+    "uninterrupted",
+    "whole_file",
+    "whole_folder",
+]
 
 
 def prepare_folder(folder: Path) -> None:
@@ -31,6 +50,145 @@ def prepare_folder(folder: Path) -> None:
         raise InputError(f"--out {folder}: cannot be written: {reason(error)}") from None
 
 
-def reason(error: OSError) -> str:
-    """Why, on one line."""
-    return error.strerror or " ".join(str(error).split())
+def random_name(suffix: str = "") -> str:
+    """A file name that nobody else takes."""
+    return secrets.token_hex(16) + suffix
+
+
+@contextmanager
+def whole_file(path: Path, *, durable: bool = False, replace: bool = True) -> Iterator[Path]:
+    """A place to write a file to; it becomes ``path`` if the block ends without an error.
+
+    Parameters
+    ----------
+    path : Path
+        Its folder must be there.
+    durable : bool
+        Whether the file is brought to the disk itself before it is moved: it then survives a loss
+        of power.
+    replace : bool
+        Whether it takes the place of a file of this name.  Otherwise that one stays, and what was
+        written is dropped: of several writers the first one wins.
+
+    Yields
+    ------
+    Path
+        An empty file of ours, beside ``path``.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written or moved.
+    """
+    part = path.with_name(f".{path.name}.{secrets.token_hex(8)}.part")
+    try:
+        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+        yield part
+        if durable:
+            with part.open("rb+") as file:
+                os.fsync(file.fileno())
+        if replace:
+            os.replace(part, path)
+        else:
+            with suppress(FileExistsError):
+                os.link(part, path)
+        if durable:
+            _note_folder(path.parent)
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+@contextmanager
+def whole_folder(
+    folder: Path, *, ours: Collection[str] = (), last: str | None = None
+) -> Iterator[Path]:
+    """A place to write a folder's files to; they get there if the block ends without an error.
+
+    Ctrl-C and a request to terminate wait while the files are moved, so that there is no mixture of
+    two writings.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there, and so are those above it.  What is in it stays, but for files
+        that are written again.
+    ours : collection of str
+        Files that leave the folder where they are not written again: those of a former writing of
+        another kind.
+    last : str, optional
+        The file that is moved last, as the sign that all are there.
+
+    Yields
+    ------
+    Path
+        An empty folder.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written or moved.
+    """
+    # In a folder that is there already the temporary one lies inside: its parent may be another
+    # file system, or closed to us.
+    above = folder if folder.is_dir() else folder.absolute().parent
+    part = above / f".{secrets.token_hex(8)}.part"
+    made = [parent for parent in part.parents if not parent.exists()]
+    try:
+        part.mkdir(parents=True)
+        yield part
+        with uninterrupted():
+            _move_all(part, folder, ours, last)
+    finally:
+        with uninterrupted():
+            shutil.rmtree(part, ignore_errors=True)
+            for parent in made:
+                with suppress(OSError):  # it holds the results
+                    parent.rmdir()
+
+
+def set_aside(path: Path, suffix: str) -> None:
+    """Give a file another suffix, if that can be done: what is damaged is looked at once."""
+    with suppress(OSError):
+        os.replace(path, path.with_suffix(suffix))
+
+
+def _move_all(part: Path, folder: Path, ours: Collection[str], last: str | None) -> None:
+    if not folder.is_dir():
+        os.rename(part, folder)
+        return
+    written = {path.name for path in part.iterdir()}
+    for name in set(ours) - written:
+        (folder / name).unlink(missing_ok=True)
+    for name in sorted(written, key=lambda name: (name == last, name)):
+        os.replace(part / name, folder / name)
+
+
+def _note_folder(folder: Path) -> None:
+    """Bring a folder's list of files to the disk; not every file system can."""
+    with suppress(OSError):
+        listed = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(listed)
+        finally:
+            os.close(listed)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Let Ctrl-C and the request to terminate wait until the block is done."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread is interrupted
+        return
+    arrived: list[int] = []
+    former = {
+        number: signal.signal(number, lambda number, _: arrived.append(number))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield
+    finally:
+        for number, handler in former.items():
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+        if arrived:
+            signal.raise_signal(arrived[0])

@@ -12,7 +12,7 @@ import pytest
 
 import railquake as rq
 from railquake.bench import gpu as bench_gpu
-from railquake.cli.application import app
+from railquake.cli.commands import app
 from railquake.physics import kernel
 from railquake.run.many import simulate_many
 

@@ -7,9 +7,8 @@ import signal
 import pytest
 
 import railquake as rq
-from railquake import plots
+from railquake import files, plots
 from railquake.files import prepare_folder
-from railquake.report import run_folder
 from railquake.report.run_folder import json_text, write_run
 
 MOTION = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
@@ -78,13 +77,13 @@ def test_interruption_waits_while_files_are_moved(response, tmp_path, monkeypatc
     def stop(*_):
         raise KeyboardInterrupt
 
-    move = run_folder._move
+    move = files._move_all
 
-    def interrupted(part, folder):
+    def interrupted(*arguments):
         os.kill(os.getpid(), number)
-        move(part, folder)
+        move(*arguments)
 
-    monkeypatch.setattr(run_folder, "_move", interrupted)
+    monkeypatch.setattr(files, "_move_all", interrupted)
     former = signal.signal(number, stop)
     try:
         with pytest.raises(KeyboardInterrupt):

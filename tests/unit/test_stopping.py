@@ -8,7 +8,7 @@ from types import ModuleType
 import pytest
 
 from railquake.__main__ import main
-from railquake.stopping import StopRequested, stop_requests_heard
+from railquake.cli.stopping import StopRequested, stop_requests_heard
 
 REQUESTS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 

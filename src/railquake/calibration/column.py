@@ -10,9 +10,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from railquake.errors import InputError
+from railquake.inputs.layers import with_absolute_paths
+from railquake.inputs.marks import Place
 from railquake.inputs.model import InputModel, Integer, Name, Text, inconsistent, validated
 from railquake.inputs.motion import Motion
-from railquake.inputs.presets import with_absolute_paths
 from railquake.inputs.support import Pier
 from railquake.inputs.toml import read_toml
 from railquake.inputs.units import (
@@ -217,7 +218,7 @@ def load_column(path: str | Path) -> Column:
     motions = data.get("motions")
     if isinstance(motions, list):
         data["motions"] = [
-            with_absolute_paths("motion", one, folder) if isinstance(one, dict) else one
+            with_absolute_paths(one, folder, Place((Motion,))) if isinstance(one, dict) else one
             for one in motions
         ]
     column = validated(Column, data, str(path))

@@ -13,8 +13,8 @@ from typing import Any, Literal
 import numpy as np
 
 from railquake.errors import InputError
-from railquake.inputs.model import did_you_mean
 from railquake.inputs.units import to_si
+from railquake.messages import did_you_mean
 
 __all__ = ["Kind", "Loop", "check_loop", "read_loop", "resampled"]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import uuid
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,6 +9,8 @@ from typing import Any
 from railquake.calibration.calibrate import Calibration, LoopFacts, loop_facts
 from railquake.calibration.preset import preset_text
 from railquake.errors import InputError
+from railquake.files import whole_folder
+from railquake.messages import reason
 from railquake.plots.calibration import (
     HistoryPair,
     ParameterMark,
@@ -26,6 +26,7 @@ __all__ = ["as_dict", "draw_histories", "draw_loops", "summary_lines", "write_ca
 GOOD_MISFIT, GOOD_PEAK = 0.10, 0.10  # loop misfit over the peak, and peak displacement
 TOLD = 0.01  # of the largest cycle's energy: smaller ones are not told
 SUMMARY = "fit.json"
+HISTORIES = "histories.png"  # only where there are checks
 
 
 def as_dict(calibration: Calibration) -> dict[str, Any]:
@@ -203,27 +204,16 @@ def write_calibration(calibration: Calibration, folder: Path) -> dict[str, Any]:
         If the files cannot be written.
     """
     row = as_dict(calibration)
-    there = folder.is_dir()
-    part = (folder if there else folder.absolute().parent) / f".{uuid.uuid4().hex[:8]}.part"
     try:
-        part.mkdir(parents=True)
-        (part / "hinge.toml").write_text(preset_text(calibration), encoding="utf-8")
-        draw_loops(calibration, part / "loops.png")
-        draw_parameters(calibration, part / "parameters.png")
-        if calibration.checks:
-            draw_histories(calibration, part / "histories.png")
-        (part / SUMMARY).write_text(json_text(row) + "\n", encoding="utf-8")
-        if not there:
-            part.rename(folder)
-        else:
-            if not calibration.checks:  # of a former calibration
-                (folder / "histories.png").unlink(missing_ok=True)
-            for path in sorted(part.iterdir(), key=lambda path: path.name == SUMMARY):
-                path.replace(folder / path.name)
+        with whole_folder(folder, ours=(HISTORIES,), last=SUMMARY) as part:
+            (part / "hinge.toml").write_text(preset_text(calibration), encoding="utf-8")
+            draw_loops(calibration, part / "loops.png")
+            draw_parameters(calibration, part / "parameters.png")
+            if calibration.checks:
+                draw_histories(calibration, part / HISTORIES)
+            (part / SUMMARY).write_text(json_text(row) + "\n", encoding="utf-8")
     except OSError as error:
-        raise InputError(f"{folder}: cannot be written: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
+        raise InputError(f"{folder}: cannot be written: {reason(error)}") from None
     return row
 
 

@@ -1,21 +1,30 @@
 """The command ``railquake``: thin, every command calls what a Python user would call.
 
-A module a group of commands; each registers with `application.app` when it is imported here.
+`stopping`     Ctrl-C, heard before anything else is imported
+`commands`     all commands; a module a group of them
+`application`  what they register with
+`status`       from the arguments to an exit status
+`shared`       what several commands need
 """
 
-from railquake.cli import bench, calibrate, probe, report, select, single, study, validate
-from railquake.cli.application import app
-from railquake.cli.status import main
+from collections.abc import Sequence
 
-__all__ = [
-    "app",
-    "bench",
-    "calibrate",
-    "main",
-    "probe",
-    "report",
-    "select",
-    "single",
-    "study",
-    "validate",
-]
+__all__ = ["main"]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; its exit status.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Instead of the command line's.
+
+    Returns
+    -------
+    int
+        See `status.main`.
+    """
+    from railquake.cli.commands import main as run  # not with this package: `stopping` is quick
+
+    return run(arguments)

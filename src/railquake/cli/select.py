@@ -11,6 +11,7 @@ import typer
 from railquake.cli.application import app
 from railquake.cli.shared import Json, print_json, progress_bar, write_file, write_text
 from railquake.errors import InputError
+from railquake.messages import reason
 
 if TYPE_CHECKING:
     from railquake.suite import Selection
@@ -68,7 +69,7 @@ def select(
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{out}: cannot be made: {error.strerror or error}") from None
+        raise InputError(f"{out}: cannot be made: {reason(error)}") from None
     manifest, picture = out / "manifest.csv", out / "suite.png"
     write_text(manifest, manifest_text(chosen))
 

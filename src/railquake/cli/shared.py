@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.errors import InputError
-from railquake.files import reason
+from railquake.files import whole_file
+from railquake.messages import reason, unreadable
 
 if TYPE_CHECKING:
     from rich.progress import Progress, ProgressColumn
@@ -103,8 +104,7 @@ def read_column(path: Path, name: str) -> Any:
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "is not text"
-        raise InputError(f"{path}: cannot be read: {reason}") from None
+        raise unreadable(path, error) from None
     column, values = 0, []
     started = False
     for number, line in enumerate(lines, 1):
@@ -135,15 +135,12 @@ def _is_number(text: str) -> bool:
 
 
 def write_file(path: Path, write: Callable[[Path], Any]) -> None:
-    """Write a file under a temporary name and move it into its place."""
-    part = path.with_name(f".{path.name}.part")
+    """Write a file, whole or not at all."""
     try:
-        write(part)
-        part.replace(path)
+        with whole_file(path) as part:
+            write(part)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {reason(error)}") from None
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

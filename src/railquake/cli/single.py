@@ -20,6 +20,7 @@ from railquake.cli.shared import (
 )
 from railquake.errors import InputError
 from railquake.measures import Measure, named
+from railquake.messages import did_you_mean
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
@@ -104,7 +105,6 @@ def presets(
 
     Example: railquake presets bart-berkeley
     """
-    from railquake.inputs.model import did_you_mean
     from railquake.inputs.presets import list_presets
 
     known = list_presets()

@@ -11,8 +11,8 @@ from typing import Any
 import typer
 
 from railquake.cli.application import app
+from railquake.cli.stopping import STOPPED, STOPPED_TEXT
 from railquake.errors import InputError
-from railquake.stopping import STOPPED, STOPPED_TEXT
 
 __all__ = ["Stopped", "main"]
 

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import types
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from pathlib import Path
+from typing import Annotated, Any, Literal, get_args, get_origin
 
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from railquake.errors import InputError
-from railquake.inputs.model import InputModel, did_you_mean
-from railquake.inputs.presets import KINDS
+from railquake.inputs.layers import has_presets
+from railquake.inputs.marks import AsText, File, Place, mark_of, models_in, parts_of
 from railquake.inputs.scenario import Scenario
-from railquake.inputs.units import Quantity, Sign, shown, to_si
+from railquake.inputs.toml import is_path
+from railquake.inputs.units import Quantity, Sign, to_si
+from railquake.messages import did_you_mean, shown
 
 __all__ = ["Input", "input_at"]
 
@@ -35,12 +35,15 @@ class Input:
         Of a number, a key of `units.DIMENSIONS`.
     sign : {"any", "non-negative", "positive"}
         Of a number.
+    file : {"no", "always", "with an ending"}
+        Whether a text that it takes is the path of a file: always, or if it is no name.
     """
 
     field_path: str
     kind: Kind
     dimension: str | None = None
     sign: Sign = "any"
+    file: Literal["no", "always", "with an ending"] = "no"
 
     def in_si(self, value: Any, where: str) -> Any:
         """The value as the scenario holds it.
@@ -70,6 +73,14 @@ class Input:
                 raise InputError(f"{where}: must be {name}, found {shown(value)}")
         return value
 
+    def absolute(self, value: Any, folder: Path) -> Any:
+        """The value with its path, if it is one, absolute; relative ones start from a folder."""
+        if not isinstance(value, str) or self.file == "no":
+            return value
+        if self.file == "with an ending" and not is_path(value):
+            return value
+        return str((folder / value).absolute())
+
 
 def input_at(path: str, where: str) -> Input:
     """Find the input that a path names.
@@ -93,40 +104,21 @@ def input_at(path: str, where: str) -> Input:
     steps = path.split(".")
     if steps[:2] == ["motion", "synthetic"] and len(steps) > 2:
         return _synthetic(path, steps[2:], where)
-    models: list[type[BaseModel]] = [Scenario]
+    place, one_of_many = Place((Scenario,)), False
     for depth, step in enumerate(steps):
-        last = depth == len(steps) - 1
-        if depth == 1 and step == "preset" and steps[0] in KINDS and last:
-            return Input(path, "text")
-        found = [model.model_fields[step] for model in models if step in model.model_fields]
-        if not found:
-            known = list(dict.fromkeys(key for model in models for key in model.model_fields))
-            if depth == 1 and steps[0] in KINDS:
-                known.append("preset")
+        if steps[1:] == ["preset"] and depth == 1 and has_presets(place):
+            return Input(path, "text", file="with an ending")
+        if not place.models:
+            here = ".".join(steps[:depth])
+            raise InputError(f'{where}: "{path}" names no input; {here} holds no others')
+        if not place.by_name and step not in place.names():
+            known = [key for key in place.names() if not (one_of_many and key == "name")]
+            known += ["preset"] if depth == 1 and has_presets(place) else []
             advice = did_you_mean(step, known)
             raise InputError(f'{where}: "{path}" names no input; "{step}" is unknown, {advice}')
-        named = any(step in getattr(model, "_tables_by_name", ()) for model in models)
-        models = [model for field in found for model in _models(field)]
-        if last:
-            return _leaf(path, found[0], bool(models))
-        if named:
-            return _in_named(path, models, steps[depth + 1 :], where)
-        if not models:
-            here = ".".join(steps[: depth + 1])
-            raise InputError(f'{where}: "{path}" names no input; {here} holds no others')
-    raise AssertionError("a path has at least one step")
-
-
-def _in_named(path: str, models: list[type[BaseModel]], rest: list[str], where: str) -> Input:
-    """An input of one of several things with names: ``bodies.car.mass``."""
-    if len(rest) == 1:
-        return Input(path, "any")
-    known = [key for model in models for key in model.model_fields if key != "name"]
-    for model in models:
-        if len(rest) == 2 and rest[1] in model.model_fields:
-            return _leaf(path, model.model_fields[rest[1]], False)
-    advice = did_you_mean(rest[1], known)
-    raise InputError(f'{where}: "{path}" names no input; "{rest[1]}" is unknown, {advice}')
+        field = place.field(step)  # None for a name, and for a table of a law from outside
+        place, one_of_many = place.below(step), place.by_name
+    return Input(path, "any") if field is None else _leaf(path, field)
 
 
 def _synthetic(path: str, rest: list[str], where: str) -> Input:
@@ -141,12 +133,16 @@ def _synthetic(path: str, rest: list[str], where: str) -> Input:
     return Input(path, "number", DIMENSIONS[rest[0]] or "number", "positive")
 
 
-def _leaf(path: str, field: FieldInfo, has_models: bool) -> Input:
-    quantity = _quantity(field)
+def _leaf(path: str, field: FieldInfo) -> Input:
+    quantity = mark_of(field, Quantity)
     if quantity is not None:
         return Input(path, "number", quantity.dimension, quantity.sign)
+    if mark_of(field, AsText) is not None:
+        return Input(path, "any", file="with an ending")
+    if mark_of(field, File) is not None:
+        return Input(path, "text", file="always")
     kinds = _kinds(field.annotation)
-    if has_models and path not in ("wheelrail.wheel", "wheelrail.rail"):
+    if models_in(field.annotation):
         return Input(path, "any")
     if bool in kinds:
         return Input(path, "flag")
@@ -155,48 +151,14 @@ def _leaf(path: str, field: FieldInfo, has_models: bool) -> Input:
     return Input(path, "text" if kinds == {str} else "any")
 
 
-def _quantity(field: FieldInfo) -> Quantity | None:
-    """How a number is marked, in the field's own annotation or that of one alternative."""
-    for mark in field.metadata:
-        if isinstance(mark, Quantity):
-            return mark
-    for part in _parts(field.annotation):
-        if get_origin(part) is Annotated:
-            for mark in get_args(part)[1:]:
-                if isinstance(mark, Quantity):
-                    return mark
-    return None
-
-
-def _parts(annotation: Any) -> list[Any]:
-    """The alternatives of a union."""
-    if get_origin(annotation) in (Union, types.UnionType):
-        return [part for a in get_args(annotation) for part in _parts(a)]
-    return [annotation]
-
-
 def _kinds(annotation: Any) -> set[type]:
     """Plain types of an annotation; those of a literal's values."""
     found: set[type] = set()
-    for part in _parts(annotation):
+    for part in parts_of(annotation):
         while get_origin(part) is Annotated:
             part = get_args(part)[0]
         if get_origin(part) is Literal:
             found |= {type(value) for value in get_args(part)}
         elif isinstance(part, type) and part is not type(None):
             found.add(part)
-    return found
-
-
-def _models(field: FieldInfo) -> list[type[BaseModel]]:
-    found: list[type[BaseModel]] = []
-
-    def look(annotation: Any) -> None:
-        if isinstance(annotation, type) and issubclass(annotation, InputModel):
-            found.append(annotation)
-        elif not isinstance(annotation, str | Mapping):
-            for part in get_args(annotation):
-                look(part)
-
-    look(field.annotation)
     return found

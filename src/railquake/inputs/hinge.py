@@ -21,6 +21,27 @@ from railquake.inputs.units import (
     PositiveRotationalStiffness,
     PositiveSpecificEnergy,
 )
+from railquake.laws import HINGE_LAWS
+
+TABLES: dict[str, type[InputModel]] = {}
+"""Models of tables ``[support.NAME]`` that hinge laws of this package have, by the law's name."""
+
+
+def table_of(law: str) -> str:
+    """Name of the table with a hinge law's own parameters: ``my_law`` for ``my-law``."""
+    return law.replace("-", "_")
+
+
+def model_of(law: str) -> type[InputModel] | None:
+    """Model of the table with a hinge law's own parameters.
+
+    Returns
+    -------
+    type or None
+        What the law's record has as ``inputs``, or what `TABLES` has for its name.  Without one the
+        law takes its values from ``[support.bouc_wen]``, as ``elastic`` does.
+    """
+    return getattr(HINGE_LAWS[law], "inputs", None) or TABLES.get(law)
 
 
 class BoucWenHinge(InputModel):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, ClassVar, TypeVar
+from collections.abc import Mapping
+from typing import Annotated, Any, TypeVar
 
 from pydantic import (
     BaseModel,
@@ -19,7 +18,9 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from railquake.errors import InputError
-from railquake.inputs.units import Quantity, shown
+from railquake.inputs.marks import AsText, ByName, Label, mark_of, marked
+from railquake.inputs.units import Quantity
+from railquake.messages import did_you_mean, shown, toml_type
 
 Name = Annotated[str, StringConstraints(strict=True, min_length=1, pattern=r"^\S(.*\S)?$")]
 Text = StrictStr
@@ -27,33 +28,6 @@ Flag = StrictBool
 Integer = StrictInt
 
 ModelType = TypeVar("ModelType", bound="InputModel")
-
-
-def did_you_mean(word: str, known: Sequence[str]) -> str:
-    """Say which of the known words is nearest, or list them all.
-
-    Parameters
-    ----------
-    word : str
-        What was found.
-    known : sequence of str
-        What would have been accepted.
-    """
-    near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1)
-    listed = ", ".join(known)
-    if near:
-        best = next(k for k in known if k.lower() == near[0])
-        return f'did you mean "{best}"? (known: {listed})'
-    return f"known: {listed}"
-
-
-def toml_type(value: object) -> str:
-    """Name a value's type as the case file's author knows it."""
-    if isinstance(value, Mapping):
-        return "a table"
-    if isinstance(value, list | tuple):
-        return "a list"
-    return shown(value)
 
 
 class InputModel(BaseModel):
@@ -69,10 +43,6 @@ class InputModel(BaseModel):
         frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=False
     )
 
-    # Lists of named things may be written as tables of tables: {"car": {...}} for
-    # [{"name": "car", ...}], so that one of them can be overridden by its name.
-    _tables_by_name: ClassVar[tuple[str, ...]] = ()
-
     def __init__(self, **data: Any) -> None:
         """Validate the fields; see the class for their meaning."""
         try:
@@ -85,9 +55,41 @@ class InputModel(BaseModel):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     @classmethod
+    def added_tables(cls) -> dict[str, type[InputModel]]:
+        """Tables that stand beside the fields: of laws from outside, each with its model."""
+        return {}
+
+    @classmethod
     def _normalised(cls, data: dict[str, Any]) -> dict[str, Any]:
-        """Turn other ways of writing the same thing into the fields (for subclasses)."""
+        """Turn other ways of writing the same thing into the fields."""
+        for key, mark in marked(cls, AsText).items():
+            if isinstance(data.get(key), str):
+                data[key] = mark.read(data[key])
+        for key in marked(cls, ByName):
+            if isinstance(data.get(key), Mapping):
+                data[key] = named_list(key, data[key])
         return data
+
+    def table(self) -> dict[str, Any]:
+        """Make the table of a case file that gives this again, all values in SI units."""
+        return self._as_written(self.model_dump(exclude_none=True))
+
+    def _as_written(self, data: dict[str, Any]) -> dict[str, Any]:
+        """Turn the values of the fields into what a case file has."""
+        by_name = marked(type(self), ByName)
+        for name, value in self:
+            if isinstance(value, InputModel):
+                data[name] = value._as_written(data[name])
+            elif isinstance(value, tuple) and value and isinstance(value[0], InputModel):
+                pairs = zip(value, data[name], strict=True)
+                data[name] = tuple(item._as_written(table) for item, table in pairs)
+            if name in by_name:
+                data[name] = {table.pop("name"): table for table in data[name]}
+        return data
+
+    def without_effect(self) -> set[str]:
+        """Fields on which nothing that is computed depends."""
+        return set(marked(type(self), Label))
 
     @model_validator(mode="before")
     @classmethod
@@ -100,27 +102,20 @@ class InputModel(BaseModel):
                 "table", "must be a table, found {found}", {"found": toml_type(data)}
             )
         data = cls._normalised(dict(data))
-        for key in cls._tables_by_name:
-            if isinstance(data.get(key), Mapping):
-                data[key] = named_list(key, data[key])
+        known = (*cls.model_fields, *cls.added_tables())
         for key in data:
-            if key not in cls.model_fields:
+            if key not in known:
                 raise PydanticCustomError(
                     "unknown_key",
                     "unknown key; {advice}",
-                    {"key": str(key), "advice": did_you_mean(str(key), list(cls.model_fields))},
+                    {"key": str(key), "advice": did_you_mean(str(key), known)},
                 )
         for key, field in cls.model_fields.items():
             if field.is_required() and key not in data:
-                examples = [m.example for m in field.metadata if isinstance(m, Quantity)]
-                raise PydanticCustomError(
-                    "missing_key",
-                    "missing{advice}",
-                    {
-                        "key": key,
-                        "advice": f"; write e.g. {key} = {examples[0]}" if examples else "",
-                    },
-                )
+                quantity = mark_of(field, Quantity)
+                advice = "" if quantity is None else f"; write e.g. {key} = {quantity.example}"
+                raise PydanticCustomError("missing_key", "missing{advice}",
+                                          {"key": key, "advice": advice})  # fmt: skip
         return data
 
 
@@ -234,6 +229,25 @@ def one_line(error: ValidationError, data: object) -> str:
     if others:
         text += f" (also wrong: {', '.join(others[:3])}{' ...' if len(others) > 3 else ''})"
     return " ".join(text.split())
+
+
+def nested(model: type[ModelType], key: str, table: object) -> ModelType:
+    """Validate a table inside another one; for use in model validators.
+
+    Parameters
+    ----------
+    model : type of InputModel
+    key : str
+        Where the table stands in the other.
+    table : object
+        The table, or the model itself.
+    """
+    try:
+        return model.model_validate(table)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        path = ".".join(filter(None, (key, field_path(first, table))))
+        raise inconsistent(_reason(first), path) from None
 
 
 def validated(model: type[ModelType], data: object, where: str) -> ModelType:

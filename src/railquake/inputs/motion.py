@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from railquake.errors import InputError
+from railquake.inputs.marks import File, Label, OneOf, Samples, alternatives
 from railquake.inputs.model import Flag, InputModel, Integer, Name, Text, inconsistent
 from railquake.inputs.units import Acceleration, Number, PositiveTime
 
@@ -42,23 +43,31 @@ class Motion(InputModel):
     The file is not read before :meth:`Scenario.ground_motion` asks for it.
     """
 
-    record: Annotated[Name | None, Field(description="File of the lateral component")] = None
+    record: Annotated[
+        Name | None, File(), OneOf("origin"), Field(description="File of the lateral component")
+    ] = None
     synthetic: Annotated[
         dict[str, int | float] | None,
+        OneOf("origin"),
         BeforeValidator(_synthetic_in_si),
         WithJsonSchema({"type": "object"}),
         Field(description='Parameters of a synthetic motion, e.g. { seed = 1, pga = "0.4 g" }'),
     ] = None
     acceleration: Annotated[
         tuple[Acceleration, ...] | None,
+        OneOf("origin"),
+        Samples(),
         Field(min_length=2, description="Lateral samples at steps of dt [m/s2]"),
     ] = None
-    name: Annotated[Text, Field(description="What to call a motion given by its samples")] = ""
+    name: Annotated[
+        Text, Label(), Field(description="What to call a motion given by its samples")
+    ] = ""
     vertical: Annotated[
-        Name | None, Field(description="File of the vertical component, positive up")
+        Name | None, File(), Field(description="File of the vertical component, positive up")
     ] = None
     vertical_acceleration: Annotated[
         tuple[Acceleration, ...] | None,
+        Samples(),
         Field(min_length=2, description="Vertical samples at steps of dt, positive up [m/s2]"),
     ] = None
     scale: Annotated[
@@ -82,12 +91,13 @@ class Motion(InputModel):
 
     @model_validator(mode="after")
     def _has_one_origin(self) -> Motion:
-        given = [
-            key for key in ("record", "synthetic", "acceleration") if getattr(self, key) is not None
-        ]
+        (origins,) = alternatives(type(self))
+        given = [key for key in origins if getattr(self, key) is not None]
         if len(given) != 1:
             found = " and ".join(given) or "none of them"
-            raise inconsistent(f"give one of record, synthetic and acceleration, found {found}")
+            raise inconsistent(
+                f"give one of {', '.join(origins[:-1])} and {origins[-1]}, found {found}"
+            )
         if self.vertical is not None and self.vertical_acceleration is not None:
             raise inconsistent("give either vertical or vertical_acceleration, found both")
         samples = (self.acceleration, self.vertical_acceleration)

@@ -2,46 +2,47 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 import os
-from array import array
-from collections.abc import Iterable, Mapping
-from functools import lru_cache
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
 from railquake.errors import InputError
+from railquake.inputs.identity import fingerprint, hash_of_fingerprints
+from railquake.inputs.layers import (
+    Overrides,
+    has_presets,
+    resolved,
+    with_absolute_paths,
+    with_overrides,
+)
+from railquake.inputs.marks import Place
 from railquake.inputs.model import (
     InputModel,
-    did_you_mean,
     field_path,
     inconsistent,
     one_line,
-    toml_type,
 )
-from railquake.inputs.motion import Motion, motion_of_samples
-from railquake.inputs.presets import KINDS, resolved_section, with_absolute_paths
+from railquake.inputs.motion import Motion
 from railquake.inputs.solver import Solver
-from railquake.inputs.support import AtGrade, Pier, PrescribedTrack, Support
-from railquake.inputs.toml import dumps, is_path, read_toml, with_overrides
+from railquake.inputs.support import SUPPORTS, Support, SupportKind, of_its_kind
+from railquake.inputs.toml import dumps, is_path, read_toml
 from railquake.inputs.vehicle import Vehicle
 from railquake.inputs.wheelrail import WheelRail
+from railquake.messages import refuse_unknown, toml_type
 
 if TYPE_CHECKING:
     from railquake.inputs.ground_motion import GroundMotion
 
-Overrides = Iterable[str] | Mapping[str, Any]
 _SUGGESTIONS = {
     "vehicle": '[vehicle] preset = "bart"',
     "support": '[support] preset = "bart-berkeley" or kind = "at-grade"',
     "wheelrail": '[wheelrail] preset = "bart"',
     "motion": '[motion] record = "record.AT2"',
 }
-_NOT_PHYSICS = ("name", "summary", "source", "note")
 
 
 class Scenario(InputModel):
@@ -64,7 +65,7 @@ class Scenario(InputModel):
 
     @model_validator(mode="after")
     def _has_motion(self) -> Scenario:
-        if self.motion is None and not isinstance(self.support, PrescribedTrack):
+        if self.motion is None and self.support.needs_motion:
             raise inconsistent(f"missing; write e.g. {_SUGGESTIONS['motion']}", "motion")
         return self
 
@@ -83,9 +84,7 @@ class Scenario(InputModel):
         """
         if self.motion is not None:
             return self.motion.lateral_motion()
-        assert isinstance(self.support, PrescribedTrack)  # by the validator above
-        track = self.support.track_motion()
-        return motion_of_samples("at rest", track.dt, (0.0,) * track.y.size)
+        return self.support.ground_at_rest()
 
     def vertical_motion(self) -> GroundMotion | None:
         """Read the vertical ground motion and scale it.
@@ -129,16 +128,7 @@ class Scenario(InputModel):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the tables of a case file that gives this scenario, all values in SI units."""
-        data = self.model_dump(exclude_none=True)
-        for key in ("bodies", "springs", "dashpots"):
-            items = data["vehicle"][key]
-            data["vehicle"][key] = {item.pop("name"): item for item in items}
-        for key in ("wheel", "rail"):
-            spec = data["wheelrail"][key]
-            data["wheelrail"][key] = (
-                spec if spec["segments"] else {k: spec[k] for k in ("builtin", "file") if k in spec}
-            )
-        return data
+        return self.table()
 
     def to_toml(self) -> str:
         """Write a case file that gives this scenario again.
@@ -168,73 +158,6 @@ class Scenario(InputModel):
         return hash_of_fingerprints(
             {name: fingerprint(getattr(self, name)) for name in type(self).model_fields}
         )
-
-
-def fingerprint(section: InputModel | None) -> str:
-    """All of a scenario's section that decides the results, as a text.
-
-    Parameters
-    ----------
-    section : InputModel or None
-        Such as ``scenario.support``.
-
-    Returns
-    -------
-    str
-        Equal texts mean equal inputs; the content of files counts, not their names.
-
-    Raises
-    ------
-    InputError
-        If a file that the section names cannot be read.
-    """
-    return "null" if section is None else _canonical(section)
-
-
-def hash_of_fingerprints(texts: Mapping[str, str]) -> str:
-    """`Scenario.content_hash` from the fingerprints of all sections by name.
-
-    Parameters
-    ----------
-    texts : mapping
-        For each section of a scenario what `fingerprint` gives.
-    """
-    canonical = ",".join(f'"{name}":{texts[name]}' for name in sorted(texts))
-    return hashlib.sha256(f"{{{canonical}}}".encode()).hexdigest()
-
-
-def _canonical(section: InputModel) -> str:
-    data = section.model_dump()
-    if not isinstance(section, Motion | Solver):
-        for key in _NOT_PHYSICS:
-            data.pop(key, None)
-    if isinstance(section, Solver) and section.dt != "auto":
-        data.pop("time_step_tolerance")
-    tables = [(data, "file"), (data, "record"), (data, "vertical")]
-    tables += [(data[key], "file") for key in ("wheel", "rail") if key in data]
-    for table, key in tables:
-        if table.get(key) is not None:
-            table[key] = _file_hash(table[key])
-    if isinstance(section, Motion):
-        data.pop("name")
-        for key in ("acceleration", "vertical_acceleration"):
-            if data[key] is not None:
-                data[key] = hashlib.sha256(array("d", data[key]).tobytes()).hexdigest()
-    return json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
-
-
-def _file_hash(path: str) -> str:
-    try:
-        found = os.stat(path)
-        return _hash_of(path, found.st_mtime_ns, found.st_size)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
-
-
-@lru_cache(maxsize=4096)
-def _hash_of(path: str, changed: int, size: int) -> str:
-    """Hash of a file's content, read again when its time or size has changed."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
 def load_scenario(path: str | Path, overrides: Overrides = ()) -> Scenario:
@@ -291,60 +214,37 @@ def scenario_from_dict(
         Naming the field, what was found and what to write.
     """
     base = Path.cwd() if folder is None else Path(folder)
-    tables = with_overrides(data, overrides, f"{where}: --set")
+    place = Place((Scenario,))
+    tables = with_overrides(data, overrides, place, f"{where}: --set")
     sections = list(Scenario.model_fields)
+    refuse_unknown(tables, sections, f"{where}: ")
     for key, value in tables.items():
-        if key not in sections:
-            raise InputError(f"{where}: {key}: unknown key; {did_you_mean(key, sections)}")
         if not isinstance(value, Mapping):
             advice = f"; write e.g. {_SUGGESTIONS[key]}" if key in _SUGGESTIONS else ""
             raise InputError(f"{where}: {key}: must be a table, found {toml_type(value)}{advice}")
-    resolved: dict[str, Any] = {}
-    for key in KINDS:
-        if key not in tables:
-            raise InputError(f"{where}: {key}: missing; write e.g. {_SUGGESTIONS[key]}")
-        resolved[key] = resolved_section(key, tables[key], base, f"{where}: {key}")
-    resolved["support"] = _of_its_kind(resolved["support"], f"{where}: support")
-    if "motion" in tables:
-        resolved["motion"] = with_absolute_paths("motion", tables["motion"], base)
-    if "solver" in tables:
-        resolved["solver"] = tables["solver"]
+    whole: dict[str, Any] = {}
+    for key, field in Scenario.model_fields.items():
+        below, table = place.below(key), tables.get(key)
+        if table is None:
+            if field.is_required():
+                raise InputError(f"{where}: {key}: missing; write e.g. {_SUGGESTIONS[key]}")
+        elif has_presets(below):
+            whole[key] = resolved(key, below, table, base, f"{where}: {key}")
+        else:
+            whole[key] = with_absolute_paths(table, base, below)
+    whole["support"] = of_its_kind(whole["support"], f"{where}: support")
     try:
-        return Scenario.model_validate(resolved)
+        return Scenario.model_validate(whole)
     except ValidationError as error:
-        origin = _preset_at_fault(error, resolved, tables)
-        raise InputError(f"{where}: {one_line(error, resolved)}{origin}") from None
-
-
-def _of_its_kind(table: dict[str, Any], where: str) -> dict[str, Any]:
-    """Settle the kind of support, and leave out what only a pier has from one that is none.
-
-    A case that sets ``kind = "at-grade"`` beside a pier's preset, hinge or coupling (as an axis
-    of a study does) means the same train without the pier.
-    """
-    models: dict[str, type[InputModel]] = {
-        "pier": Pier,
-        "at-grade": AtGrade,
-        "prescribed": PrescribedTrack,
-    }
-    kind = table.get("kind", "pier")
-    if not isinstance(kind, str) or kind not in models:
-        shown = toml_type(kind)
-        advice = did_you_mean(kind if isinstance(kind, str) else "", list(models))
-        raise InputError(f"{where}.kind: unknown kind of support {shown}; {advice}")
-    fields = models[kind].model_fields
-    elsewhere = {key for model in models.values() for key in model.model_fields} - set(fields)
-    return {
-        "kind": kind,
-        **{key: value for key, value in table.items() if kind == "pier" or key not in elsewhere},
-    }
+        origin = _preset_at_fault(error, whole, tables)
+        raise InputError(f"{where}: {one_line(error, whole)}{origin}") from None
 
 
 def _preset_at_fault(
-    error: ValidationError, resolved: Mapping[str, Any], tables: Mapping[str, Any]
+    error: ValidationError, whole: Mapping[str, Any], tables: Mapping[str, Any]
 ) -> str:
     """Name the preset's file if the wrong value is not in the case itself."""
-    steps = field_path(error.errors(include_url=False)[0], resolved).split(".")
+    steps = field_path(error.errors(include_url=False)[0], whole).split(".")
     preset = tables.get(steps[0], {}).get("preset")
     if not isinstance(preset, str | os.PathLike) or not is_path(os.fspath(preset)):
         return ""
@@ -358,7 +258,7 @@ def _preset_at_fault(
 
 def scenario(
     vehicle: str | Path | Mapping[str, Any] | Vehicle = "bart",
-    support: str | Path | Mapping[str, Any] | Pier | AtGrade | PrescribedTrack = "bart-berkeley",
+    support: str | Path | Mapping[str, Any] | SupportKind = "bart-berkeley",
     wheelrail: str | Path | Mapping[str, Any] | WheelRail = "bart",
     *,
     record: str | Path | None = None,
@@ -417,8 +317,8 @@ def scenario(
     'elastic'
     """
     pier = {"hinge": hinge, "coupled": coupled, "damping_ratio": damping_ratio}
-    if isinstance(support, str) and support == "at-grade":
-        support = {"kind": "at-grade"}
+    if isinstance(support, str) and _needs_nothing(support):
+        support = {"kind": support}
     how = {"channel": channel, "units": units, "allow_high_pga": allow_high_pga, "scale": scale}
     from_motion = _motion_table(record, motion, synthetic, vertical)
     tables: dict[str, Any] = {
@@ -432,6 +332,12 @@ def scenario(
     if solver:
         tables["solver"] = solver
     return scenario_from_dict(tables)
+
+
+def _needs_nothing(kind: str) -> bool:
+    """Whether a text is a kind of support that has no values, such as ``at-grade``."""
+    fields = SUPPORTS[kind].model_fields.values() if kind in SUPPORTS else None
+    return fields is not None and not any(field.is_required() for field in fields)
 
 
 def _table(

@@ -72,6 +72,10 @@ class Solver(InputModel):
         PositiveFrequency, Field(description="Low-pass corner of the filtered lateral force [Hz]")
     ] = 20.0
 
+    def without_effect(self) -> set[str]:
+        """Fields on which nothing that is computed depends."""
+        return set() if self.dt == "auto" else {"time_step_tolerance"}
+
     @property
     def step(self) -> float:
         """The time step, s; ``dt = "auto"`` has been settled before (`run.simulate.settled`)."""

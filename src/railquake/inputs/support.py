@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from railquake.errors import InputError
-from railquake.inputs.hinge import BoucWenHinge
-from railquake.inputs.model import Flag, InputModel, Name, Text, validated
+from railquake.inputs.hinge import BoucWenHinge, model_of, table_of
+from railquake.inputs.layers import FromPreset
+from railquake.inputs.marks import File, KnownLaw, Label
+from railquake.inputs.model import Flag, InputModel, Name, Text, nested
+from railquake.inputs.motion import motion_of_samples
 from railquake.inputs.units import (
     Length,
     PositiveLength,
@@ -23,22 +25,42 @@ from railquake.inputs.units import (
     PositiveSecondMomentOfArea,
     Quantity,
 )
+from railquake.laws import HINGE_LAWS
+from railquake.messages import did_you_mean, shown, toml_type, unreadable
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from railquake.inputs.ground_motion import GroundMotion
+
 _DampingRatio = Annotated[float, Quantity("number", "non-negative")]
 
 
-class Pier(InputModel):
+class SupportKind(InputModel):
+    """Base of what may carry the track; each kind has its name as the default of ``kind``."""
+
+    needs_motion: ClassVar[bool] = True
+    """Whether a scenario must say how the ground moves."""
+
+    def ground_at_rest(self) -> GroundMotion:
+        """Make the ground's motion where a scenario gives none; only where none is needed."""
+        raise NotImplementedError(f"{type(self).__name__} needs a motion")
+
+
+class Pier(SupportKind, FromPreset):
     """A single column with a hinge at its base and the track on a rigid offset at its top."""
 
+    # A hinge law from outside may have a table of its own, [support.my_law]: it is held beside the
+    # fields.  Nothing else gets so far, see `InputModel._known_and_complete`.
+    model_config = ConfigDict(extra="allow")
+    section: ClassVar[str] = "support"
+
     kind: Literal["pier"] = "pier"
-    name: Annotated[Name, Field(description="What to call the pier")]
-    summary: Annotated[Text, Field(description="One line for lists")] = ""
-    source: Annotated[Text, Field(description="Where the values come from")] = ""
-    note: Annotated[Text, Field(description="How far the values can be trusted")] = ""
+    name: Annotated[Name, Label(), Field(description="What to call the pier")]
+    summary: Annotated[Text, Label(), Field(description="One line for lists")] = ""
+    source: Annotated[Text, Label(), Field(description="Where the values come from")] = ""
+    note: Annotated[Text, Label(), Field(description="How far the values can be trusted")] = ""
     youngs_modulus: Annotated[PositivePressure, Field(description="Of the column [Pa]")]
     second_moment_of_area: Annotated[
         PositiveSecondMomentOfArea, Field(description="Of the column's (cracked) section [m4]")
@@ -58,7 +80,8 @@ class Pier(InputModel):
         Length, Field(description="Rail crowns above the column's top node [m]")
     ] = 0.0
     hinge: Annotated[
-        Literal["bouc-wen", "elastic"],
+        str,
+        KnownLaw(HINGE_LAWS),
         Field(description="Law of the hinge; elastic takes its stiffness from bouc_wen.k0"),
     ] = "bouc-wen"
     bouc_wen: Annotated[BoucWenHinge, Field(description="Parameters of the hinge")]
@@ -71,46 +94,60 @@ class Pier(InputModel):
     )
 
     @classmethod
-    def from_preset(cls, preset: str, overrides: Mapping[str, Any] | None = None) -> Pier:
-        """Make a pier from a preset.
+    def added_tables(cls) -> dict[str, type[InputModel]]:
+        """Tables of hinge laws with parameters of their own."""
+        found: dict[str, type[InputModel]] = {}
+        for law in HINGE_LAWS:
+            model, table = model_of(law), table_of(law)
+            if model is None:
+                continue
+            if table in cls.model_fields:
+                raise InputError(
+                    f"hinge law {shown(law)}: its table [support.{table}] has the name of a key of "
+                    "the pier; give the law another name"
+                )
+            found[table] = model
+        return found
 
-        Parameters
-        ----------
-        preset : str
-            A built-in name or the path of a TOML file.
-        overrides : mapping, optional
-            Values to change, as they would stand in the case file's table.
+    @classmethod
+    def _normalised(cls, data: dict[str, Any]) -> dict[str, Any]:
+        data = super()._normalised(data)
+        tables = cls.added_tables()
+        hinge = data.get("hinge")
+        if isinstance(hinge, str) and hinge in HINGE_LAWS and table_of(hinge) in tables:
+            data.setdefault(table_of(hinge), {})  # what is missing in it is told, or has defaults
+        for key, model in tables.items():
+            if key in data:
+                data[key] = nested(model, key, data[key])
+        return data
 
-        Returns
-        -------
-        Pier
-
-        Raises
-        ------
-        InputError
-            If there is no such preset or the values do not make a pier.
-        """
-        from railquake.inputs.presets import resolved_section
-
-        table = resolved_section("support", {"preset": preset, **(overrides or {})})
-        return validated(cls, table, "support")
+    @property
+    def hinge_parameters(self) -> InputModel:
+        """Parameters of the hinge law that is chosen."""
+        if model_of(self.hinge) is None:
+            return self.bouc_wen
+        return getattr(self, table_of(self.hinge))
 
 
-class AtGrade(InputModel):
+class AtGrade(SupportKind):
     """No structure: the track moves with the ground."""
 
     kind: Literal["at-grade"] = "at-grade"
 
 
-class PrescribedTrack(InputModel):
+class PrescribedTrack(SupportKind):
     """A track whose motion is known, from a CSV file.
 
     Columns ``t_s, y_m`` and optionally ``z_m`` and ``roll_rad``: the motion of the track relative
     to the frame in which the ground motion is zero.
     """
 
+    needs_motion: ClassVar[bool] = False
+
     kind: Literal["prescribed"] = "prescribed"
-    file: Annotated[Name, Field(description="CSV file with columns t_s, y_m[, z_m, roll_rad]")]
+    file: Annotated[
+        Name, File(), Field(description="CSV file with columns t_s, y_m[, z_m, roll_rad]")
+    ]
 
     def track_motion(self) -> TrackMotion:
         """Read the file.
@@ -126,8 +163,45 @@ class PrescribedTrack(InputModel):
         """
         return read_track_motion(self.file)
 
+    def ground_at_rest(self) -> GroundMotion:
+        """Make a ground that does not move, for as long as the track is known."""
+        track = self.track_motion()
+        return motion_of_samples("at rest", track.dt, (0.0,) * track.y.size)
+
 
 Support = Annotated[Pier | AtGrade | PrescribedTrack, Field(discriminator="kind")]
+"""All kinds of support; the first is meant where a case does not say."""
+
+SUPPORTS: dict[str, type[SupportKind]] = {
+    kind.model_fields["kind"].default: kind for kind in get_args(get_args(Support)[0])
+}
+"""All kinds by their names, as `Support` lists them."""
+
+
+def of_its_kind(table: dict[str, Any], where: str) -> dict[str, Any]:
+    """Settle the kind of support, and leave out what only a pier has from one that is none.
+
+    A case that sets ``kind = "at-grade"`` beside a pier's preset, hinge or coupling (as an axis
+    of a study does) means the same train without the pier.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind.
+    """
+    kind = table.get("kind", next(iter(SUPPORTS)))
+    if not isinstance(kind, str) or kind not in SUPPORTS:
+        advice = did_you_mean(kind, SUPPORTS)
+        raise InputError(f"{where}.kind: unknown kind of support {toml_type(kind)}; {advice}")
+    own = _keys(SUPPORTS[kind])
+    others = {key for model in SUPPORTS.values() for key in _keys(model)} - own
+    builds_on_presets = issubclass(SUPPORTS[kind], FromPreset)
+    kept = {key: value for key, value in table.items() if builds_on_presets or key not in others}
+    return {"kind": kind, **kept}
+
+
+def _keys(model: type[InputModel]) -> set[str]:
+    return {*model.model_fields, *model.added_tables()}
 
 
 @dataclass(frozen=True)
@@ -181,7 +255,7 @@ def read_track_motion(path: str | Path) -> TrackMotion:
                 if any(cell.strip() for cell in row)
             ]
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise unreadable(path, error) from error
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: is not a CSV text file: {error}") from error
     header = lines[0][1] if lines else []

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic_core import PydanticCustomError, core_schema
 
 from railquake.errors import InputError
+from railquake.messages import shown
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -228,16 +229,6 @@ def _parsed(value: object, dimension: Dimension, sign: Sign) -> float:
         required = "positive" if sign == "positive" else "zero or positive"
         raise _QuantityError(f"must be {required}, found {shown(value)}")
     return number
-
-
-def shown(value: object) -> str:
-    """Show a value in a message: in one short line, whatever it is."""
-    if isinstance(value, str):
-        return '"' + " ".join(value[:60].split()) + '"'
-    if isinstance(value, int) and abs(value) >= 10**60:
-        return "a number of more than 60 digits"
-    text = " ".join(repr(value).split())
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def to_si(value: object, dimension: str, where: str, *, sign: Sign = "any") -> float:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Iterable
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from railquake.inputs.layers import FromPreset
+from railquake.inputs.marks import ByName, Label, OneOf
 from railquake.inputs.model import (
     Flag,
     InputModel,
     Integer,
     Name,
     Text,
-    did_you_mean,
     inconsistent,
-    validated,
 )
 from railquake.inputs.units import (
     Length,
@@ -26,6 +26,7 @@ from railquake.inputs.units import (
     PositiveRollInertia,
     PositiveStiffness,
 )
+from railquake.messages import did_you_mean
 
 Direction = Literal["lateral", "vertical"]
 
@@ -53,10 +54,13 @@ class _Element(InputModel):
         Length, Field(description="y of both attachments, right of the vehicle's centre [m]")
     ]
     height: Annotated[
-        Length | None, Field(description="Height of both attachments above the rails [m]")
+        Length | None,
+        OneOf("height"),
+        Field(description="Height of both attachments above the rails [m]"),
     ] = None
     heights: Annotated[
         tuple[Length, Length] | None,
+        OneOf("height"),
         Field(description="Heights of the two attachments, where they differ [m]"),
     ] = None
     pair: Annotated[
@@ -95,7 +99,7 @@ class Dashpot(_Element):
     damping: Annotated[NonNegativeDamping, Field(description="Damping per side [N s/m]")]
 
 
-class Vehicle(InputModel):
+class Vehicle(FromPreset):
     """A vehicle: any bodies, and the springs and dashpots between them.
 
     The whole vehicle is lumped on one cross-section; the body called `wheelset` carries `axles`
@@ -108,15 +112,19 @@ class Vehicle(InputModel):
         If names repeat or are unknown, or a body is not held by springs in both directions.
     """
 
-    _tables_by_name: ClassVar[tuple[str, ...]] = ("bodies", "springs", "dashpots")
+    section: ClassVar[str] = "vehicle"
 
-    name: Annotated[Name, Field(description="What to call the vehicle")]
-    summary: Annotated[Text, Field(description="One line for lists")] = ""
-    source: Annotated[Text, Field(description="Where the values come from")] = ""
-    note: Annotated[Text, Field(description="How far the values can be trusted")] = ""
-    bodies: Annotated[tuple[Body, ...], Field(min_length=1, description="Rigid bodies")]
-    springs: Annotated[tuple[Spring, ...], Field(description="Springs between bodies")] = ()
-    dashpots: Annotated[tuple[Dashpot, ...], Field(description="Dashpots between bodies")] = ()
+    name: Annotated[Name, Label(), Field(description="What to call the vehicle")]
+    summary: Annotated[Text, Label(), Field(description="One line for lists")] = ""
+    source: Annotated[Text, Label(), Field(description="Where the values come from")] = ""
+    note: Annotated[Text, Label(), Field(description="How far the values can be trusted")] = ""
+    bodies: Annotated[tuple[Body, ...], ByName(), Field(min_length=1, description="Rigid bodies")]
+    springs: Annotated[
+        tuple[Spring, ...], ByName(), Field(description="Springs between bodies")
+    ] = ()
+    dashpots: Annotated[
+        tuple[Dashpot, ...], ByName(), Field(description="Dashpots between bodies")
+    ] = ()
     wheelset: Annotated[Name, Field(description="The body that carries the wheels")] = "wheelset"
     axles: Annotated[
         Integer, Field(ge=1, le=1000, description="Wheels on each side that share the load")
@@ -160,31 +168,6 @@ class Vehicle(InputModel):
     def mass(self) -> float:
         """Mass of all bodies together [kg]."""
         return sum(body.mass for body in self.bodies)
-
-    @classmethod
-    def from_preset(cls, preset: str, overrides: Mapping[str, Any] | None = None) -> Vehicle:
-        """Make a vehicle from a preset.
-
-        Parameters
-        ----------
-        preset : str
-            A built-in name or the path of a TOML file.
-        overrides : mapping, optional
-            Values to change, as they would stand in the case file's table.
-
-        Returns
-        -------
-        Vehicle
-
-        Raises
-        ------
-        InputError
-            If there is no such preset or the values do not make a vehicle.
-        """
-        from railquake.inputs.presets import resolved_section
-
-        table = resolved_section("vehicle", {"preset": preset, **(overrides or {})})
-        return validated(cls, table, "vehicle")
 
 
 def _refuse_repeats(key: str, names: list[str]) -> None:

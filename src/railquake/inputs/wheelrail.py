@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from railquake.errors import InputError
-from railquake.inputs.model import Flag, InputModel, Name, Text, inconsistent, validated
+from railquake.inputs.layers import FromPreset
+from railquake.inputs.marks import AsText, File, KnownLaw, Label, OneOf
+from railquake.inputs.model import Flag, InputModel, Name, Text, inconsistent
 from railquake.inputs.toml import is_path
 from railquake.inputs.units import (
     NonNegativeNumber,
@@ -19,6 +20,7 @@ from railquake.inputs.units import (
     PositivePressure,
     PositiveSpeed,
 )
+from railquake.laws import CREEP_LAWS, RESTITUTION_LAWS
 
 if TYPE_CHECKING:
     from railquake.inputs.profile import Profile
@@ -66,7 +68,7 @@ class ProfileSpec(InputModel):
     """
 
     builtin: Annotated[Name | None, Field(description="A profile defined by a standard")] = None
-    file: Annotated[Name | None, Field(description="A .prw, .prr or CSV file")] = None
+    file: Annotated[Name | None, File(), Field(description="A .prw, .prr or CSV file")] = None
     segments: Annotated[
         tuple[ProfileSegment, ...], Field(description="Lines, arcs, polynomials, end to end")
     ] = ()
@@ -86,6 +88,11 @@ class ProfileSpec(InputModel):
                 + ("none of them" if given == 0 else "more than one")
             )
         return self
+
+    def _as_written(self, data: dict[str, Any]) -> dict[str, Any]:
+        """Turn the values into what a case file has: of a name or a file only that."""
+        kept = data if self.segments else ("builtin", "file")
+        return super()._as_written({key: value for key, value in data.items() if key in kept})
 
     def profile(self, kind: Literal["wheel", "rail"], name: str) -> Profile:
         """Make the profile.
@@ -133,28 +140,36 @@ def spec_from_text(text: str) -> dict[str, str]:
     return {"file": text} if is_path(text) else {"builtin": text}
 
 
-class WheelRail(InputModel):
+class WheelRail(FromPreset):
     """A pair of wheels on a pair of rails.
 
     Profiles are those of the right-hand wheel and rail, y outward; the left-hand ones are their
     mirror images.
     """
 
-    name: Annotated[Name, Field(description="What to call the pair")]
-    summary: Annotated[Text, Field(description="One line for lists")] = ""
-    source: Annotated[Text, Field(description="Where the values come from")] = ""
-    note: Annotated[Text, Field(description="How far the values can be trusted")] = ""
-    wheel: Annotated[ProfileSpec, Field(description="Wheel: name, file or segments")]
-    rail: Annotated[ProfileSpec, Field(description="Rail: name, file or segments")]
+    section: ClassVar[str] = "wheelrail"
+
+    name: Annotated[Name, Label(), Field(description="What to call the pair")]
+    summary: Annotated[Text, Label(), Field(description="One line for lists")] = ""
+    source: Annotated[Text, Label(), Field(description="Where the values come from")] = ""
+    note: Annotated[Text, Label(), Field(description="How far the values can be trusted")] = ""
+    wheel: Annotated[
+        ProfileSpec, AsText(spec_from_text), Field(description="Wheel: name, file or segments")
+    ]
+    rail: Annotated[
+        ProfileSpec, AsText(spec_from_text), Field(description="Rail: name, file or segments")
+    ]
     running_circle: Annotated[
         PositiveLength, Field(description="Running circles from the wheelset's centre [m]")
     ]
     rail_centre: Annotated[
         PositiveLength | None,
+        OneOf("gauge"),
         Field(description="Origins of the rail profiles from the track's centre [m]"),
     ] = None
     gauge: Annotated[
         PositiveLength | None,
+        OneOf("gauge"),
         Field(description="Between the gauge faces; gives rail_centre from the profile [m]"),
     ] = None
     gauge_height: Annotated[
@@ -168,7 +183,8 @@ class WheelRail(InputModel):
         NonNegativeNumber, Field(le=1.0, description="Coefficient c_r of the normal law [1]")
     ]
     restitution_law: Annotated[
-        Literal["hunt-crossley", "calibrated"],
+        str,
+        KnownLaw(RESTITUTION_LAWS),
         Field(description="calibrated: a free impact rebounds at exactly the coefficient"),
     ] = "hunt-crossley"
     onset_rate_bound: Annotated[
@@ -178,19 +194,13 @@ class WheelRail(InputModel):
         PositiveSpeed, Field(description="Least train speed in the creepages [m/s]")
     ] = 1.0
     creep_law: Annotated[
-        Literal["she", "coulomb", "carter", "polach"],
+        str,
+        KnownLaw(CREEP_LAWS),
         Field(description="How Kalker's linear forces saturate (she: Shen-Hedrick-Elkins)"),
     ] = "she"
     reference_roll: Annotated[
         PositiveAngle, Field(description="Relative roll at which slide-off begins [rad]")
     ]
-
-    @classmethod
-    def _normalised(cls, data: dict[str, Any]) -> dict[str, Any]:
-        for key in ("wheel", "rail"):
-            if isinstance(data.get(key), str):
-                data[key] = spec_from_text(data[key])
-        return data
 
     @model_validator(mode="after")
     def _fits_together(self) -> WheelRail:
@@ -258,28 +268,3 @@ class WheelRail(InputModel):
         assert self.gauge is not None  # one of the two is there, by the validator above
         rail = self.rail_profile() if rail is None else rail
         return 0.5 * self.gauge - face_offset(rail, self.gauge_height)
-
-    @classmethod
-    def from_preset(cls, preset: str, overrides: Mapping[str, Any] | None = None) -> WheelRail:
-        """Make a pair from a preset.
-
-        Parameters
-        ----------
-        preset : str
-            A built-in name or the path of a TOML file.
-        overrides : mapping, optional
-            Values to change, as they would stand in the case file's table.
-
-        Returns
-        -------
-        WheelRail
-
-        Raises
-        ------
-        InputError
-            If there is no such preset or the values do not make a pair.
-        """
-        from railquake.inputs.presets import resolved_section
-
-        table = resolved_section("wheelrail", {"preset": preset, **(overrides or {})})
-        return validated(cls, table, "wheelrail")

@@ -5,17 +5,13 @@ from __future__ import annotations
 import csv
 import json
 import math
-import shutil
-import signal
-import threading
-import uuid
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.files import reason
+from railquake.files import whole_folder
+from railquake.messages import reason
 from railquake.run.assess import assess
 
 if TYPE_CHECKING:
@@ -23,9 +19,10 @@ if TYPE_CHECKING:
 
 __all__ = ["json_text", "write_run"]
 
+SUMMARY = "summary.json"
 # What a run writes; only these are replaced in a folder that is there already.
 FILES = (
-    "summary.json", "history.nc", "events.csv", "case.toml", "histories.png", "wheel-loads.png",
+    SUMMARY, "history.nc", "events.csv", "case.toml", "histories.png", "wheel-loads.png",
     "relative-roll.png", "section.png", "hinge-loop.png",
 )  # fmt: skip
 
@@ -69,65 +66,19 @@ def write_run(response: Response, folder: Path, *, pictures: bool = True) -> dic
         If the files cannot be written.
     """
     row = assess(response)
-    # In a folder that is there already the temporary one lies inside: its parent may be another
-    # file system, or closed to us.
-    unfinished = f".{uuid.uuid4().hex[:8]}.part"
-    above = folder if folder.is_dir() else folder.absolute().parent
-    part = above / unfinished
-    made = [parent for parent in (above, *above.parents) if not parent.exists()]
     try:
-        part.mkdir(parents=True)
-        (part / "case.toml").write_text(response.system.scenario.to_toml(), encoding="utf-8")
-        _write_events(response, part / "events.csv")
-        response.history.to_netcdf(part / "history.nc", engine="h5netcdf")
-        if pictures:
-            from railquake.plots import write_pictures
+        with whole_folder(folder, ours=FILES, last=SUMMARY) as part:
+            (part / "case.toml").write_text(response.system.scenario.to_toml(), encoding="utf-8")
+            _write_events(response, part / "events.csv")
+            response.history.to_netcdf(part / "history.nc", engine="h5netcdf")
+            if pictures:
+                from railquake.plots import write_pictures
 
-            write_pictures(response, part)
-        (part / "summary.json").write_text(json_text(row) + "\n", encoding="utf-8")
-        with _uninterrupted():
-            _move(part, folder)
+                write_pictures(response, part)
+            (part / SUMMARY).write_text(json_text(row) + "\n", encoding="utf-8")
     except OSError as error:
         raise InputError(f"{folder}: cannot be written: {reason(error)}") from None
-    finally:
-        with _uninterrupted():
-            shutil.rmtree(part, ignore_errors=True)
-            for parent in made:
-                with suppress(OSError):  # it holds the results
-                    parent.rmdir()
     return row
-
-
-def _move(part: Path, folder: Path) -> None:
-    """Move what was written into its place; the summary last, as the sign that all is there."""
-    if not folder.is_dir():
-        part.rename(folder)
-        return
-    written = {path.name for path in part.iterdir()}
-    for name in set(FILES) - written:  # of a former run of another kind
-        (folder / name).unlink(missing_ok=True)
-    for name in sorted(written, key=lambda name: name == "summary.json"):
-        (part / name).replace(folder / name)
-
-
-@contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Let Ctrl-C and the request to terminate wait until the block is done."""
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread is interrupted
-        return
-    arrived: list[int] = []
-    former = {
-        number: signal.signal(number, lambda number, _: arrived.append(number))
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
-    try:
-        yield
-    finally:
-        for number, handler in former.items():
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
-        if arrived:
-            signal.raise_signal(arrived[0])
 
 
 def _write_events(response: Response, path: Path) -> None:

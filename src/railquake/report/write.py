@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-import shutil
-import uuid
 from collections.abc import Callable
-from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
 from railquake.errors import InputError
-from railquake.files import prepare_folder
+from railquake.files import prepare_folder, whole_file, whole_folder
 from railquake.fragility import OUTCOMES, write_csv
+from railquake.messages import reason
 from railquake.report import (
     curves,
     decoupled,
@@ -140,30 +138,18 @@ def _footer() -> str:
 
 
 def _write(page: Path, text: str, sections: list[ReportSection], context: Context) -> None:
-    """Write all under temporary names, then move; the page last."""
-    mark = uuid.uuid4().hex[:8]
-    part = page.with_name(f".{page.name}.{mark}.part")
-    figures = page.parent / FIGURES
-    fresh = page.parent / f".{FIGURES}.{mark}.part"
+    """Write all, then move it; the page last."""
     try:
         page.parent.mkdir(parents=True, exist_ok=True)
-        fresh.mkdir()
-        for chart in charts_of(sections):
-            write_png(chart, fresh / f"{chart.name}.png")
-            (fresh / f"{chart.name}.csv").write_text(csv_text(chart), encoding="utf-8")
-        _write_pelicun(fresh, context)
-        part.write_text(text, encoding="utf-8")
-        figures.mkdir(exist_ok=True)
-        for file in sorted(fresh.iterdir()):
-            file.replace(figures / file.name)
-        part.replace(page)
+        with whole_file(page) as part:
+            part.write_text(text, encoding="utf-8")
+            with whole_folder(page.parent / FIGURES) as fresh:
+                for chart in charts_of(sections):
+                    write_png(chart, fresh / f"{chart.name}.png")
+                    (fresh / f"{chart.name}.csv").write_text(csv_text(chart), encoding="utf-8")
+                _write_pelicun(fresh, context)
     except OSError as error:
-        reason = error.strerror or " ".join(str(error).split())
-        raise InputError(f"{page}: the report cannot be written: {reason}") from None
-    finally:
-        shutil.rmtree(fresh, ignore_errors=True)
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
+        raise InputError(f"{page}: the report cannot be written: {reason(error)}") from None
 
 
 def _write_pelicun(folder: Path, context: Context) -> None:

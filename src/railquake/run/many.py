@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 
 from railquake.assembly import System, assemble
-from railquake.errors import InputError, on_one_line
+from railquake.errors import InputError
 from railquake.march.compiler import lockstep_target
+from railquake.messages import on_one_line
 from railquake.run.assess import assess
 from railquake.run.audit import audit
 from railquake.run.gpu import DeviceLanes, require_device, require_known

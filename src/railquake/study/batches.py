@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import threading
-from collections import OrderedDict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.memory import Bounded
 from railquake.run.many import failed_row, run_here
 from railquake.study.design import Design
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
     from railquake.run.time_step import TimeStep
-    from railquake.study.file import Study
+    from railquake.study.file import StudyInputs
 
 __all__ = ["Batch", "Ended", "kept_design", "run_batch"]
 
@@ -32,7 +32,7 @@ class Batch:
     ----------
     key : str
         Tells studies apart within a process.
-    study : Study
+    study : StudyInputs
         Its suite loaded.
     time_step : TimeStep or None
         Where the study leaves it open.
@@ -40,29 +40,12 @@ class Batch:
     """
 
     key: str
-    study: Study
+    study: StudyInputs
     time_step: TimeStep | None
     rows: tuple[int, ...]
 
 
-_DESIGNS: OrderedDict[str, Design] = OrderedDict()
-_DESIGNS_MOST = 4
-_DESIGNS_LOCK = threading.Lock()
-
-
-def _design_of(batch: Batch) -> Design:
-    with _DESIGNS_LOCK:
-        known = _DESIGNS.get(batch.key)
-    return known or _keep_design(batch.key, Design(batch.study, batch.time_step))
-
-
-def _keep_design(key: str, design: Design) -> Design:
-    with _DESIGNS_LOCK:
-        _DESIGNS[key] = design
-        _DESIGNS.move_to_end(key)
-        while len(_DESIGNS) > _DESIGNS_MOST:
-            _DESIGNS.popitem(last=False)
-    return design
+_DESIGNS = Bounded[str, Design](4)
 
 
 def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
@@ -80,7 +63,7 @@ def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
         Row and measures.  A run that cannot be made has the status ``failed`` and its ``error``.
     """
     stop = threading.Event() if stop is None else stop
-    design = _design_of(batch)
+    design = _DESIGNS.get(batch.key, lambda: Design(batch.study, batch.time_step))
     done: Ended = []
 
     def scenarios() -> Iterator[tuple[int, Scenario]]:
@@ -100,9 +83,8 @@ def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
 @contextmanager
 def kept_design(key: str, design: Design) -> Iterator[None]:
     """Let the tasks of this process find the design; forget it afterwards."""
-    _keep_design(key, design)
+    _DESIGNS.put(key, design)
     try:
         yield
     finally:
-        with _DESIGNS_LOCK:
-            _DESIGNS.pop(key, None)
+        _DESIGNS.forget(key)

@@ -12,6 +12,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from railquake.errors import InputError
+from railquake.messages import first_line, reason
 
 __all__ = ["cluster_executor"]
 
@@ -54,7 +55,7 @@ def cluster_executor(address: str, say: Callable[[str], None]) -> Iterator[tuple
         socket.create_connection((host, port), timeout=PATIENCE_S).close()
     except OSError as error:
         raise InputError(
-            f"--scheduler: no scheduler answers at {address} ({error.strerror or error}); start "
+            f"--scheduler: no scheduler answers at {address} ({reason(error)}); start "
             "one with: dask scheduler"
         ) from None
     for name in ("distributed", "distributed.client"):
@@ -86,10 +87,6 @@ def _connected(connect: Any, address: str) -> Any:
     thread.start()
     thread.join(3.0 * PATIENCE_S)
     if not found or isinstance(found[0], Exception):
-        reason = f" ({_first_line(found[0])})" if found else ""
-        raise InputError(f"--scheduler: what answers at {address} is no Dask scheduler{reason}")
+        said = f" ({first_line(found[0]) or type(found[0]).__name__})" if found else ""
+        raise InputError(f"--scheduler: what answers at {address} is no Dask scheduler{said}")
     return found[0]
-
-
-def _first_line(error: BaseException) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0]

@@ -3,35 +3,31 @@
 from __future__ import annotations
 
 import itertools
-from collections import OrderedDict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.inputs.identity import fingerprint, hash_of_fingerprints
+from railquake.inputs.layers import with_overrides
+from railquake.inputs.marks import Place
 from railquake.inputs.model import validated
 from railquake.inputs.motion import Motion
-from railquake.inputs.scenario import (
-    Scenario,
-    fingerprint,
-    hash_of_fingerprints,
-    scenario_from_dict,
-)
-from railquake.inputs.toml import with_overrides
+from railquake.inputs.scenario import Scenario, scenario_from_dict
+from railquake.memory import Bounded
 from railquake.study.axes import Axis, DistributionAxis, sampled
 from railquake.suite import Suite, SuiteMember
 
 if TYPE_CHECKING:
     from railquake.inputs.vehicle import Vehicle
     from railquake.run.time_step import TimeStep
-    from railquake.study.file import Study
+    from railquake.study.file import StudyInputs
 
 __all__ = ["Design", "Point"]
 
-_SECTIONS = ("vehicle", "support", "wheelrail", "solver")
+_SECTIONS = tuple(key for key in Scenario.model_fields if key != "motion")
 _NO_SECTION: dict[str, Any] = {}
 _REMEMBERED = 512  # sections, and motions
 _MOST_CHECKED = 4096  # combinations of values that are tried before anything runs
@@ -81,13 +77,13 @@ class Design:
 
     Parameters
     ----------
-    study : Study
+    study : StudyInputs
         Its suite loaded.
     time_step : TimeStep, optional
         What was chosen where the study leaves it open; without it scenarios leave it open, too.
     """
 
-    def __init__(self, study: Study, time_step: TimeStep | None = None) -> None:
+    def __init__(self, study: StudyInputs, time_step: TimeStep | None = None) -> None:
         assert study.suite is None or isinstance(study.suite, Suite), "the suite is loaded first"
         self.study = study
         self.where = study.where
@@ -108,10 +104,9 @@ class Design:
         self.drawn = [axis for axis in study.axes if isinstance(axis, DistributionAxis)]
         self.samples = study.sampling.count if study.sampling is not None else 1
         self._moves = any(map(_is_motion, self._paths()))
-        self._sections: OrderedDict[tuple[str, str], tuple[Any, str]] = OrderedDict()
-        self._solvers: OrderedDict[tuple[str, ...], tuple[Any, str]] = OrderedDict()
-        self._motions: OrderedDict[tuple[int, str], Motion | None] = OrderedDict()
-        self._lock = Lock()
+        self._sections = Bounded[tuple[str, str], tuple[Any, str]](_REMEMBERED)
+        self._solvers = Bounded[tuple[str, ...], tuple[Any, str]](_REMEMBERED)
+        self._motions = Bounded[tuple[int, str], Motion](_REMEMBERED)
 
     def _paths(self) -> Iterator[str]:
         for axis in self.study.axes:
@@ -167,7 +162,7 @@ class Design:
             changed = {path: changes.pop(path) for path in list(changes) if _is_motion(path)}
             if changed:
                 key = repr(changed)
-                table = with_overrides({"motion": table}, changed)["motion"]
+                table = with_overrides({"motion": table}, changed, Place((Scenario,)))["motion"]
                 record = _motion_name(table) if self.study.suite is None else record
         return Point(row, record, level, own * factor, member_index, table, key, changes, labels)
 
@@ -226,7 +221,7 @@ class Design:
             by_section.setdefault(path.partition(".")[0], {})[path] = value
         parts = {key: self._section(key, by_section.get(key, _NO_SECTION)) for key in _SECTIONS}
         motion = self._motion(point)
-        if motion is None and parts["support"][0].kind != "prescribed":
+        if motion is None and parts["support"][0].needs_motion:
             self._in_full(point)  # says what is missing
         if motion is not None:
             motion = motion.model_copy(update={"scale": point.scale})
@@ -243,41 +238,36 @@ class Design:
 
     def _section(self, key: str, changes: Mapping[str, Any]) -> tuple[Any, str]:
         """A part of the base case with some changes and its fingerprint, made once."""
-        name = (key, repr(changes))
-        with self._lock:
-            if name in self._sections:
-                self._sections.move_to_end(name)
-                return self._sections[name]
-        tables = {**self._base, "motion": _ANY_MOTION}
-        made = scenario_from_dict(tables, overrides=changes, where=f"{self.where}: base")
-        section = getattr(made, key)
-        result = section, fingerprint(section)
-        _remember(self._sections, name, result, self._lock)
-        return result
+
+        def make() -> tuple[Any, str]:
+            tables = {**self._base, "motion": _ANY_MOTION}
+            made = scenario_from_dict(tables, overrides=changes, where=f"{self.where}: base")
+            section = getattr(made, key)
+            return section, fingerprint(section)
+
+        return self._sections.get((key, repr(changes)), make)
 
     def _settled(self, scenario: Scenario, name: tuple[str, ...]) -> tuple[Any, str]:
         """The solver with the time step that was chosen, found once for all motions."""
-        assert self.time_step is not None  # by the caller
-        with self._lock:
-            if name in self._solvers:
-                return self._solvers[name]
-        solver = self.time_step.settled(scenario).solver
-        result = solver, fingerprint(solver)
-        _remember(self._solvers, name, result, self._lock)
-        return result
+        step = self.time_step
+        assert step is not None  # by the caller
+
+        def make() -> tuple[Any, str]:
+            solver = step.settled(scenario).solver
+            return solver, fingerprint(solver)
+
+        return self._solvers.get(name, make)
 
     def _motion(self, point: Point) -> Motion | None:
         """A member's motion with an axis's changes, validated once."""
-        name = (point.member, point.motion_key)
-        with self._lock:
-            if name in self._motions:
-                return self._motions[name]
+        if not point.motion:
+            return None
         where = f"{self.where}: motion"
         if self.study.suite is not None:
             where = f"{self.where}: suite: {point.record}"
-        motion = validated(Motion, point.motion, where) if point.motion else None
-        _remember(self._motions, name, motion, self._lock)
-        return motion
+        return self._motions.get(
+            (point.member, point.motion_key), lambda: validated(Motion, point.motion, where)
+        )
 
     def _in_full(self, point: Point) -> Scenario:
         tables = dict(self._base)
@@ -328,13 +318,6 @@ class Design:
 
 def _is_motion(path: str) -> bool:
     return path.startswith("motion.")
-
-
-def _remember(store: OrderedDict[Any, Any], key: Any, value: Any, lock: Lock) -> None:
-    with lock:
-        store[key] = value
-        while len(store) > _REMEMBERED:
-            store.popitem(last=False)
 
 
 def _motion_name(table: Mapping[str, Any]) -> str:

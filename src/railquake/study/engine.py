@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.messages import first_line
 from railquake.run.many import (
     Device,
     choose_time_step,
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 
     from railquake.run.many import MakeLanes
     from railquake.run.time_step import TimeStep
-    from railquake.study.file import Study
+    from railquake.study.file import StudyInputs
 
 __all__ = ["StudyProgress", "run_study"]
 
@@ -69,7 +70,7 @@ class StudyProgress:
 
 
 def run_study(
-    study: Study,
+    study: StudyInputs,
     out: Path,
     *,
     jobs: int | None = None,
@@ -81,7 +82,7 @@ def run_study(
     shard: tuple[int, int] | str | None = None,
     device: Device = "cpu",
 ) -> pd.DataFrame:
-    """Run a study, or what is left of it; see `Study.run`."""
+    """Run a study, or what is left of it; see `railquake.Study.run`."""
     import pyarrow as pa
     import pyarrow.compute as pc
 
@@ -217,7 +218,7 @@ def _run_all(
     except Exception as error:
         if stop is not None:
             raise  # in this process it is a fault of the program
-        text = (str(error).splitlines() or [""])[0]
+        text = first_line(error)
         raise InputError(
             f"study: the workers failed ({type(error).__name__}{': ' if text else ''}{text}); "
             "finished rows are kept: see that they run this version of railquake and reach its "

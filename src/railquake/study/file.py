@@ -1,78 +1,41 @@
-"""Study files: a base case, a suite of motions and axes."""
+"""What a study is given: a base case, a suite of motions and axes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from concurrent.futures import Executor
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
+
+from pydantic import create_model
 
 from railquake.errors import InputError
-from railquake.inputs.model import did_you_mean, toml_type
-from railquake.inputs.presets import KINDS, with_absolute_paths
-from railquake.inputs.scenario import Overrides, Scenario
-from railquake.inputs.toml import is_path, merged, read_toml, with_overrides
-from railquake.inputs.units import shown
+from railquake.inputs.layers import merged, with_absolute_paths
+from railquake.inputs.marks import Place, alternatives
+from railquake.inputs.motion import Motion
+from railquake.inputs.scenario import Scenario
+from railquake.inputs.toml import is_path, read_toml
+from railquake.messages import did_you_mean, refuse_unknown, shown, toml_type
 from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
 from railquake.study.parsing import parse_axes, parse_sampling
 from railquake.suite import SUITES, Suite, SuiteMember, load_suite
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from railquake.run.many import Device
-    from railquake.study.engine import StudyProgress
-
-__all__ = ["AUTO", "Study", "load_study"]
+__all__ = ["AUTO", "FILE", "StudyInputs"]
 
 AUTO = "auto"  # a time step that is chosen for the study
 _SECTIONS = ("base", "suite", "axes", "sampling")
+_CASE = Place((Scenario,))
+# An axis' name is the path of an input: what excludes each other in a case does so here, too.
+FILE = Place((create_model("StudyFile", base=(Scenario, ...), axes=(Scenario, ...)),))
 _SUITE_KEYS = ("manifest", "levels", "name", "members")
-_MOTIONS = ("motion.record", "motion.synthetic", "motion.acceleration")
+_MOTIONS = tuple(f"motion.{key}" for group in alternatives(Motion) for key in group)
 
 
 @dataclass(frozen=True)
-class Study:
-    """A base case, a suite of motions and axes: every combination is a run.
-
-    Parameters
-    ----------
-    base : Scenario, mapping, str or Path
-        A case, its tables, or its file.  ``dt = "auto"`` of its solver lets the study choose the
-        time step.
-    suite : Suite, str, Path or None
-        Motions with their scale factors: a suite, a built-in suite's name, or a manifest's path.
-        Without one the base case's own motion is taken.
-    levels : mapping
-        Factors on all motions by name, such as hazard levels; 1 without a name by default.
-    axes : mapping
-        As in a study file: by path a list of values or a distribution, or by a name a list of
-        variants, tables with ``name`` and ``set``.
-    sampling : Sampling, mapping or None
-        How distributions are sampled.
-    folder : str, Path or None
-        What relative paths of files start from; the working folder by default.
-    where : str
-        What to call the study in messages.
-
-    Raises
-    ------
-    InputError
-        In one line: what is wrong, and what to write.
-
-    Examples
-    --------
-    >>> study = Study(
-    ...     base={"vehicle": {"preset": "bart"}, "support": {"preset": "bart-berkeley"},
-    ...           "wheelrail": {"preset": "bart"}, "motion": {"synthetic": {"seed": 1}}},
-    ...     axes={"vehicle.speed": ["0.01 km/h", "80 km/h"], "motion.scale": [1.0, 2.0]},
-    ... )
-    >>> study.size
-    4
-    """
+class StudyInputs:
+    """What a study is given; see `railquake.Study`, which also runs."""
 
     base: Any
     suite: Suite | str | Path | None = None
@@ -114,7 +77,7 @@ class Study:
     @classmethod
     def from_dict(
         cls, tables: Mapping[str, Any], folder: str | Path | None = None, *, where: str = "study"
-    ) -> Study:
+    ) -> Self:
         """Make a study from the tables of a study file.
 
         Parameters
@@ -131,9 +94,7 @@ class Study:
         InputError
             Naming the field, what was found and what to write.
         """
-        for key in tables:
-            if key not in (*_SECTIONS, "railquake"):
-                raise InputError(f"{where}: {key}: unknown key; {did_you_mean(key, _SECTIONS)}")
+        refuse_unknown((key for key in tables if key != "railquake"), _SECTIONS, f"{where}: ")
         if "base" not in tables:
             raise InputError(
                 f'{where}: base: missing; write e.g. [base] case = "case.toml", or the tables of a '
@@ -191,7 +152,7 @@ class Study:
             data["sampling"] = self.sampling.to_toml()
         return data
 
-    def with_suite(self, records: str | Path | None = None) -> Study:
+    def with_suite(self, records: str | Path | None = None) -> Self:
         """The study with its suite loaded.
 
         Parameters
@@ -211,104 +172,10 @@ class Study:
         )
 
     @property
-    def size(self) -> int:
-        """Number of runs; the suite must be loaded."""
-        from railquake.study.design import Design
-
-        return Design(self).size
-
-    @property
     def chooses_time_step(self) -> bool:
         """Whether the time step is left to the study."""
         solver = self.base.get("solver")
         return isinstance(solver, Mapping) and solver.get("dt") == AUTO
-
-    def run(
-        self,
-        out: str | Path,
-        *,
-        jobs: int | None = None,
-        records: str | Path | None = None,
-        progress: Callable[[StudyProgress], None] | None = None,
-        notify: Callable[[str], None] | None = None,
-        executor: Executor | None = None,
-        scheduler: str | None = None,
-        shard: tuple[int, int] | str | None = None,
-        device: Device = "cpu",
-    ) -> pd.DataFrame:
-        """Run the study, or what is left of it.
-
-        Parameters
-        ----------
-        out : str or Path
-            Folder for the results.  If it holds results of this study, only what is missing is
-            run.
-        jobs : int, optional
-            Threads; all processors by default, two for a GPU.
-        records : str or Path, optional
-            Folder that holds the suite's records.
-        progress : callable, optional
-            Called with a `StudyProgress` whenever runs have ended.
-        notify : callable, optional
-            Called with a line of text about what is worth knowing.
-        executor : concurrent.futures.Executor, optional
-            Runs the batches instead of threads of this process.
-        scheduler : str, optional
-            Address of a Dask scheduler whose workers run the batches: ``"tcp://host:8786"``.
-        shard : (int, int) or str, optional
-            ``(3, 8)`` or ``"3/8"``: only the third of eight parts of the study.
-        device : {"cpu", "cuda"}
-            See `simulate_many`; ``cuda`` goes with neither executor nor scheduler.
-
-        Returns
-        -------
-        pandas.DataFrame
-            A row for each run, in the design's order; see `StudyResults.table`.  Of a shard, its
-            own rows.
-
-        Raises
-        ------
-        InputError
-            If an input is wrong, the folder holds another study or cannot be written, or the
-            scheduler or the GPU is not there.  Finished rows are kept.
-        """
-        from railquake.study.engine import run_study
-
-        return run_study(
-            self,
-            Path(out),
-            jobs=jobs,
-            records=None if records is None else Path(records),
-            progress=progress,
-            notify=notify,
-            executor=executor,
-            scheduler=scheduler,
-            shard=shard,
-            device=device,
-        )
-
-
-def load_study(path: str | Path, overrides: Overrides = ()) -> Study:
-    """Read a study file.
-
-    Parameters
-    ----------
-    path : str or Path
-        TOML file; relative paths in it start from its folder.
-    overrides : iterable of str, or mapping
-        Values to change, by their paths in the file: ``["base.solver.dt=auto"]``.
-
-    Returns
-    -------
-    Study
-
-    Raises
-    ------
-    InputError
-        Naming the file and the line or field, what was found and what to write.
-    """
-    tables = with_overrides(read_toml(path), overrides, f"{path}: --set")
-    return Study.from_dict(tables, Path(path).absolute().parent, where=str(path))
 
 
 def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:
@@ -322,14 +189,11 @@ def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:
     tables = dict(base)
     case = tables.pop("case", None)
     sections = list(Scenario.model_fields)
+    refuse_unknown(tables, ["case", *sections], f"{where}.")
     for key, table in tables.items():
-        if key not in sections:
-            raise InputError(
-                f"{where}.{key}: unknown key; {did_you_mean(key, ['case', *sections])}"
-            )
         if not isinstance(table, Mapping):
             raise InputError(f"{where}.{key}: must be a table, found {toml_type(table)}")
-    tables = _absolute(tables, folder)
+    tables = with_absolute_paths(tables, folder, _CASE)
     if case is None:
         return tables
     if not isinstance(case, str):
@@ -339,18 +203,7 @@ def _base_tables(base: Any, folder: Path, where: str) -> dict[str, Any]:
     for key, table in found.items():
         if not isinstance(table, Mapping):
             raise InputError(f"{path}: {key}: must be a table, found {toml_type(table)}")
-    return merged(_absolute(found, path.parent), tables)
-
-
-def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    result = {}
-    for key, table in tables.items():
-        section = with_absolute_paths(key, table, folder)
-        preset = section.get("preset")
-        if key in KINDS and isinstance(preset, str) and is_path(preset):
-            section["preset"] = str((folder / preset).absolute())
-        result[key] = section
-    return result
+    return merged(with_absolute_paths(found, path.parent, _CASE), tables, _CASE)
 
 
 def _suite(suite: Suite | str | Path | None, folder: Path) -> Suite | str | None:

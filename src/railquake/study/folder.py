@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import json
-import os
-import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.files import prepare_folder, reason
+from railquake.files import prepare_folder, random_name, set_aside, whole_file
 from railquake.inputs.toml import dumps, read_toml
-from railquake.inputs.units import shown
+from railquake.messages import reason, shown
 from railquake.run.time_step import TimeStep
 from railquake.study.table import distinct, in_columns
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-    from railquake.study.file import Study
+    from railquake.study.file import StudyInputs
 
 __all__ = ["STUDY_FILE", "TABLE_FILE", "ResultsFolder", "no_note", "read_parquet"]
 
@@ -32,30 +29,12 @@ TIME_STEP_FILE = "time_step.json"
 PARTS = "parts"
 
 
-def _replace(path: Path, write: Callable[[Path], None]) -> None:
-    """Write a file under a temporary name, make sure that it is on the disk, and move it."""
-    part = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.tmp")
-    try:
-        write(part)
-        with part.open("rb+") as file:
-            os.fsync(file.fileno())
-        part.replace(path)
-        with suppress(OSError):  # not every file system can
-            folder = os.open(path.parent, os.O_RDONLY)
-            try:
-                os.fsync(folder)
-            finally:
-                os.close(folder)
-    finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-
-
 def write_parquet(table: pa.Table, path: Path) -> None:
-    """Write a table with checksums of its pages."""
+    """Write a table with checksums of its pages; whole or not at all, and on the disk."""
     import pyarrow.parquet as pq
 
-    pq.write_table(table, path, compression="zstd", write_page_checksum=True)
+    with whole_file(path, durable=True) as part:
+        pq.write_table(table, part, compression="zstd", write_page_checksum=True)
 
 
 def read_parquet(path: Path) -> pa.Table:
@@ -83,7 +62,7 @@ class ResultsFolder:
         self.parts = path / PARTS
         self.kept = 0  # rows of this execution that are on the disk
 
-    def prepare(self, study: Study, notify: Callable[[str], None]) -> None:
+    def prepare(self, study: StudyInputs, notify: Callable[[str], None]) -> None:
         """Make the folder, or make sure that it holds results of this very study.
 
         Raises
@@ -109,7 +88,8 @@ class ResultsFolder:
             self.parts.mkdir(parents=True, exist_ok=True)
             if not file.exists():
                 text = "# Written by railquake: the study of this folder.\n" + dumps(tables)
-                _replace(file, lambda path: _write_text(path, text))
+                with whole_file(file, durable=True) as part:
+                    part.write_text(text, encoding="utf-8")
         except OSError as error:
             raise InputError(f"--out {self.path}: cannot be written: {reason(error)}") from None
 
@@ -147,9 +127,9 @@ class ResultsFolder:
         import pyarrow as pa
 
         table = pa.Table.from_pylist(sorted(rows, key=lambda row: row["row"]), schema=schema)
-        path = self.parts / f"{uuid.uuid4().hex}.parquet"
+        path = self.parts / random_name(".parquet")
         try:
-            _replace(path, lambda part: write_parquet(table, part))
+            write_parquet(table, path)
         except OSError as error:
             raise InputError(
                 f"{self.parts}: cannot be written: {reason(error)}; {self.kept} rows that "
@@ -168,9 +148,9 @@ class ResultsFolder:
             If they cannot be written.
         """
         table = distinct(source.load(schema, notify))
-        path = self.parts / f"{uuid.uuid4().hex}.parquet"
+        path = self.parts / random_name(".parquet")
         try:
-            _replace(path, partial(write_parquet, table))
+            write_parquet(table, path)
             choice = source.time_step()
             if choice is not None:
                 self.note_time_step(choice)
@@ -212,8 +192,7 @@ class ResultsFolder:
                 continue
             except (pa.ArrowException, OSError, KeyError, ValueError):
                 notify(f"{path}: truncated or damaged; its rows are computed again")
-                with suppress(OSError):
-                    path.replace(path.with_suffix(".damaged"))
+                set_aside(path, ".damaged")
         return pa.concat_tables(tables)
 
     def write_table(
@@ -239,7 +218,7 @@ class ResultsFolder:
             names = self.names()
             table = distinct(self.load(schema, no_note, names), hashes)
             try:
-                _replace(self.path / TABLE_FILE, partial(write_parquet, table))
+                write_parquet(table, self.path / TABLE_FILE)
             except OSError as error:
                 raise InputError(
                     f"{self.path / TABLE_FILE}: cannot be written: {reason(error)}; all rows are "
@@ -276,16 +255,11 @@ class ResultsFolder:
         """Note the time step that was chosen; what holds: another shard may have been faster."""
         file = self.path / TIME_STEP_FILE
         text = json.dumps({**asdict(choice), "text": choice.text}, indent=2) + "\n"
-        draft = file.with_name(f".{file.name}.{uuid.uuid4().hex[:8]}.tmp")
         try:
-            _write_text(draft, text)
-            with suppress(FileExistsError):
-                os.link(draft, file)
+            with whole_file(file, replace=False) as part:
+                part.write_text(text, encoding="utf-8")
         except OSError as error:
             raise InputError(f"{file}: cannot be written: {reason(error)}") from None
-        finally:
-            with suppress(OSError):
-                draft.unlink(missing_ok=True)
         found = self.time_step()
         assert found is not None  # it has just been written
         return found
@@ -293,10 +267,6 @@ class ResultsFolder:
 
 def no_note(_: str) -> None:
     """Say nothing."""
-
-
-def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
 
 
 def _as_read(tables: Mapping[str, Any]) -> dict[str, Any]:

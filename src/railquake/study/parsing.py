@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
 from railquake.inputs.fields import Input, input_at
-from railquake.inputs.model import did_you_mean, toml_type
-from railquake.inputs.toml import is_path
-from railquake.inputs.units import shown, to_si
+from railquake.inputs.units import to_si
+from railquake.messages import did_you_mean, shown, toml_type
 from railquake.study.axes import Axis, DistributionAxis, ListAxis, Variant, VariantAxis
 from railquake.study.distributions import DISTRIBUTIONS, METHODS, Sampling
 
 __all__ = ["parse_axes", "parse_sampling"]
 
 MOST_SAMPLES = 10_000_000
-# Paths whose texts name files where they have a folder or an ending.
-_FILES = (
-    "vehicle.preset", "support.preset", "wheelrail.preset", "support.file", "motion.record",
-    "motion.vertical", "wheelrail.wheel", "wheelrail.rail", "wheelrail.wheel.file",
-    "wheelrail.rail.file",
-)  # fmt: skip
 
 
 def parse_axes(tables: Any, folder: Path, where: str) -> tuple[Axis, ...]:
@@ -106,12 +99,7 @@ def _value(known: Input, value: Any, folder: Path, where: str) -> Any:
     """A value in SI units, its path absolute."""
     if isinstance(value, Path):
         value = str(value)
-    value = known.in_si(value, where)
-    if known.field_path in _FILES and isinstance(value, str):
-        needs_ending = not known.field_path.endswith((".file", ".record", ".vertical"))
-        if not needs_ending or is_path(value):
-            return str((folder / value).absolute())
-    return value
+    return known.absolute(known.in_si(value, where), folder)
 
 
 def _variant_axis(name: str, items: Sequence[Any], folder: Path, where: str) -> VariantAxis:
@@ -121,9 +109,7 @@ def _variant_axis(name: str, items: Sequence[Any], folder: Path, where: str) -> 
         if not isinstance(label, str) or not label.strip():
             raise InputError(f"{where}: a variant's name must be a text, found {toml_type(label)}")
         here = f"{where}.{label}"
-        for key in item:
-            if key not in ("name", "set"):
-                raise InputError(f"{here}: unknown key {key}; {did_you_mean(key, ('name', 'set'))}")
+        _refuse_unknown(item, ("name", "set"), here)
         if label in [variant.name for variant in variants]:
             raise InputError(f"{where}: two variants are called {label}; names must differ")
         if not isinstance(changes, Mapping):
@@ -149,7 +135,7 @@ def _distribution_axis(path: str, table: Mapping[str, Any], where: str) -> Distr
     known = input_at(path, where)
     name = table["distribution"]
     if not isinstance(name, str) or name not in DISTRIBUTIONS:
-        advice = did_you_mean(name if isinstance(name, str) else "", list(DISTRIBUTIONS))
+        advice = did_you_mean(name, DISTRIBUTIONS)
         raise InputError(f"{where}: unknown distribution {shown(name)}; {advice}")
     if known.kind not in ("number", "integer"):
         raise InputError(f"{where}: takes no numbers, so it has no distribution; write a list")
@@ -158,11 +144,7 @@ def _distribution_axis(path: str, table: Mapping[str, Any], where: str) -> Distr
         raise InputError(f"{where}: the distribution must be {wanted}, found {shown(name)}")
     wanted_parameters = DISTRIBUTIONS[name].parameters
     given = [key for key in table if key != "distribution"]
-    for key in given:
-        if key not in wanted_parameters:
-            raise InputError(
-                f"{where}: unknown key {key}; {did_you_mean(key, list(wanted_parameters))}"
-            )
+    _refuse_unknown(given, wanted_parameters, where)
     for key in wanted_parameters:
         if key not in given:
             raise InputError(f"{where}: {key} is missing; {name} has {_listed(wanted_parameters)}")
@@ -178,6 +160,12 @@ def _distribution_axis(path: str, table: Mapping[str, Any], where: str) -> Distr
     if fault is not None:
         raise InputError(f"{where}: {fault}")
     return DistributionAxis(path, name, parameters, known.kind)
+
+
+def _refuse_unknown(keys: Iterable[str], known: Collection[str], where: str) -> None:
+    for key in keys:
+        if key not in known:
+            raise InputError(f"{where}: unknown key {key}; {did_you_mean(key, known)}")
 
 
 def _listed(names: Mapping[str, Any]) -> str:
@@ -212,13 +200,10 @@ def parse_sampling(table: Any, axes: Sequence[Axis], where: str) -> Sampling | N
         raise InputError(f"{where}: must be a table, found {toml_type(table)}; write {example}")
     if not wanted:
         raise InputError(f"{where}: no axis is a distribution, so there is nothing to sample")
-    known = ("method", "count", "seed")
-    for key in table:
-        if key not in known:
-            raise InputError(f"{where}: unknown key {key}; {did_you_mean(key, known)}")
+    _refuse_unknown(table, ("method", "count", "seed"), where)
     method = table.get("method", METHODS[0])
     if method not in METHODS:
-        advice = did_you_mean(method if isinstance(method, str) else "", METHODS)
+        advice = did_you_mean(method, METHODS)
         raise InputError(f"{where}.method: unknown method {shown(method)}; {advice}")
     numbers = {"count": table.get("count"), "seed": table.get("seed", 0)}
     for key, least, most in (("count", 1, MOST_SAMPLES), ("seed", 0, 2**63 - 1)):

@@ -124,7 +124,7 @@ def kernel_key(scenario: Scenario) -> tuple[Any, ...]:
     """What scenarios must share to go abreast, as far as inputs tell; see `lockstep`."""
     support, track, solver = scenario.support, scenario.wheelrail, scenario.solver
     return (
-        support.kind == "prescribed",
+        support.needs_motion,
         getattr(support, "hinge", "elastic"),
         len(scenario.vehicle.bodies),
         track.wheel, track.rail, track.running_circle, track.rail_centre, track.gauge,

@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING
 
 from railquake.errors import InputError
 from railquake.inputs.toml import read_toml
+from railquake.messages import no_folder
+from railquake.study.design import Design
 from railquake.study.folder import STUDY_FILE, TABLE_FILE, ResultsFolder, no_note, read_parquet
+from railquake.study.study import Study
 from railquake.study.table import distinct, in_columns, table_schema, to_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from railquake.inputs.scenario import Scenario
-    from railquake.study.design import Design
-    from railquake.study.file import Study
 
 __all__ = ["StudyResults", "merge_results", "open_results"]
 
@@ -40,8 +41,6 @@ class StudyResults:
     @cached_property
     def design(self) -> Design:
         """Which run is which."""
-        from railquake.study.design import Design
-
         return Design(self.study, ResultsFolder(self.folder).time_step())
 
     @cached_property
@@ -118,12 +117,9 @@ def open_results(folder: str | Path) -> StudyResults:
     InputError
         If the folder is not there, is empty, or holds something else.
     """
-    from railquake.study.file import Study
-
     folder = Path(folder)
     if not folder.is_dir():
-        what = "is no folder" if folder.exists() else "there is no such folder"
-        raise InputError(f"{folder}: {what}; give the one that railquake study wrote")
+        raise no_folder(folder, "give the one that railquake study wrote")
     file = folder / STUDY_FILE
     if not file.exists():
         what = "is empty" if not any(folder.iterdir()) else f"holds no study (no {STUDY_FILE})"

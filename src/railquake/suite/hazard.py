@@ -31,6 +31,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from railquake.errors import InputError
 from railquake.inputs.ground_motion import STANDARD_GRAVITY
+from railquake.messages import unreadable
 
 __all__ = ["Hazard", "TargetSpectrum", "hazard_names", "load_hazard", "read_hazard"]
 
@@ -189,8 +190,7 @@ def read_hazard(name_or_path: str | Path) -> Hazard:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "is not text (UTF-8)"
-        raise InputError(f"{path}: cannot be read: {reason}") from None
+        raise unreadable(path, error) from None
     return _parsed(path.stem, str(path), text)
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
+from railquake.messages import no_folder, unreadable
 from railquake.suite.model import Suite, SuiteMember
 
 __all__ = ["Row", "is_file", "read_manifest", "read_rows", "suite_of_rows"]
@@ -78,8 +79,7 @@ def read_manifest(path: Path, records: Path | None) -> Suite:
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such manifest of a suite; check the path") from None
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "is not text (UTF-8)"
-        raise InputError(f"{path}: cannot be read: {reason}") from None
+        raise unreadable(path, error) from None
     return suite_of_rows(path.stem, read_rows(text, str(path)), records or path.parent)
 
 
@@ -194,8 +194,7 @@ def suite_of_rows(
         If a record is there twice, or missing: the first is named, all are counted.
     """
     if not records.is_dir():
-        what = "is no folder" if records.exists() else "there is no such folder"
-        raise InputError(f"{records}: {what}; give the one that holds the records")
+        raise no_folder(records, "give the one that holds the records")
     motions: list[dict[str, Any]] = []
     seen: dict[tuple[object, ...], Row] = {}
     for row in rows:

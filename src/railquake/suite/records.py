@@ -12,6 +12,7 @@ from pathlib import Path
 
 from railquake.errors import InputError
 from railquake.inputs.ground_motion import GroundMotion, read_motion, record_contents
+from railquake.messages import no_folder, unreadable
 
 __all__ = ["Component", "Skipped", "find_components"]
 
@@ -124,11 +125,10 @@ def find_components(
 def _files(folder: Path) -> list[Path]:
     """All files below a folder, hidden ones apart, in the order of their paths."""
     if not folder.is_dir():
-        what = "is no folder" if folder.exists() else "there is no such folder"
-        raise InputError(f"{folder}: {what}; give the one that holds the records")
+        raise no_folder(folder, "give the one that holds the records")
 
     def refuse(error: OSError) -> None:
-        raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
+        raise unreadable(str(error.filename), error) from None
 
     paths = []
     for parent, folders, names in os.walk(folder, onerror=refuse):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import shutil
-import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from railquake.errors import InputError, on_one_line
+from railquake.errors import InputError
+from railquake.files import whole_file, whole_folder
+from railquake.messages import on_one_line, reason
 from railquake.validation.comparison import Result
 from railquake.validation.runner import Report, is_green
 
@@ -208,20 +208,12 @@ def write_page(reports: Sequence[Report], path: Path) -> list[str]:
         If the folder is not there or cannot be written to.
     """
     check_page(path)
-    folder = path.parent / PICTURES
-    with tempfile.TemporaryDirectory() as temporary:
-        drawn, complaints = _draw(reports, Path(temporary))
-        part = path.with_name(f".{path.name}.part")
-        try:
+    try:
+        with whole_file(path) as part, whole_folder(path.parent / PICTURES) as pictures:
+            drawn, complaints = _draw(reports, pictures)
             part.write_text(page_text(reports, drawn), encoding="utf-8")
-            folder.mkdir(parents=True, exist_ok=True)
-            for file in Path(temporary).iterdir():
-                shutil.move(file, folder / file.name)
-            part.replace(path)
-        except OSError as error:
-            raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
-        finally:
-            part.unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {reason(error)}") from None
     return complaints
 
 
@@ -238,8 +230,8 @@ def _draw(
                 picture.draw(folder / file)
             except Exception as error:
                 (folder / file).unlink(missing_ok=True)
-                reason = on_one_line(error)
-                complaints.append(f"{report.name}: plot {picture.name} failed: {reason}")
+                said = on_one_line(error)
+                complaints.append(f"{report.name}: plot {picture.name} failed: {said}")
                 continue
             link = (PICTURES / file).as_posix()
             drawn.setdefault(report.name, []).append((link, picture.caption))

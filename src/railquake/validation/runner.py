@@ -9,8 +9,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from railquake.errors import InputError, on_one_line
-from railquake.inputs.model import did_you_mean
+from railquake.errors import InputError
+from railquake.messages import did_you_mean, on_one_line
 from railquake.validation import registry
 from railquake.validation.comparison import Comparison, Outcome, Unavailable
 

@@ -7,21 +7,23 @@ one.  Every built-in set carries its `source` and a `note` on how far it can be 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
-from railquake.inputs.model import did_you_mean, toml_type
-from railquake.inputs.toml import is_path, merged, read_toml
-from railquake.inputs.wheelrail import spec_from_text
+from railquake.inputs import layers
+from railquake.inputs.layers import preset_names
+from railquake.inputs.marks import Place
+from railquake.inputs.scenario import Scenario
+from railquake.messages import did_you_mean
 
-KINDS = ("vehicle", "support", "wheelrail")
-_DEEPEST_CHAIN = 8
+__all__ = ["KINDS", "PresetInfo", "list_presets", "preset_names", "preset_path", "resolved_section"]
+
+_PLACE = Place((Scenario,))
+KINDS = tuple(key for key in Scenario.model_fields if layers.has_presets(_PLACE.below(key)))
+"""Sections of a case file of which there are presets."""
 
 
 @dataclass(frozen=True)
@@ -48,20 +50,6 @@ class PresetInfo:
     path: Path
 
 
-@cache
-def preset_names(kind: str) -> tuple[str, ...]:
-    """Names of the built-in presets of a kind, in order of the alphabet.
-
-    Parameters
-    ----------
-    kind : {"vehicle", "support", "wheelrail"}
-        Section of the case file.
-    """
-    folder = resources.files(__package__) / kind
-    files = (entry.name for entry in folder.iterdir())
-    return tuple(sorted(name[: -len(".toml")] for name in files if name.endswith(".toml")))
-
-
 def preset_path(kind: str, name: str) -> Path:
     """Path of a built-in preset's file.
 
@@ -83,13 +71,7 @@ def preset_path(kind: str, name: str) -> Path:
     """
     if kind not in KINDS:
         raise InputError(f'unknown kind of preset "{kind}"; {did_you_mean(kind, KINDS)}')
-    names = preset_names(kind)
-    if name not in names:
-        raise InputError(
-            f'unknown {kind} preset "{name}"; {did_you_mean(name, names)}; '
-            "a file is written with its ending, e.g. my-set.toml"
-        )
-    return Path(str(resources.files(__package__) / kind / f"{name}.toml"))
+    return layers.preset_path(kind, name)
 
 
 def list_presets() -> tuple[PresetInfo, ...]:
@@ -108,7 +90,7 @@ def list_presets() -> tuple[PresetInfo, ...]:
 def resolved_section(
     kind: str, table: Mapping[str, Any], folder: Path | None = None, where: str | None = None
 ) -> dict[str, Any]:
-    """Lay a section of a case over the preset it names.
+    """Lay a section of a case over the preset it names, see `layers.resolved`.
 
     Parameters
     ----------
@@ -132,69 +114,4 @@ def resolved_section(
         If there is no such preset, its file cannot be read, or presets build on each other in a
         circle.
     """
-    where = kind if where is None else where
-    return _resolved(kind, table, Path.cwd() if folder is None else folder, where, 0)
-
-
-def _resolved(
-    kind: str, table: Mapping[str, Any], folder: Path, where: str, depth: int
-) -> dict[str, Any]:
-    own = with_absolute_paths(kind, table, folder)
-    preset = own.pop("preset", None)
-    if preset is None:
-        return own
-    if not isinstance(preset, str | os.PathLike):
-        raise InputError(
-            f"{where}.preset: must be a name or a path, found {toml_type(preset)}; "
-            f'write e.g. preset = "{preset_names(kind)[0]}"'
-        )
-    if depth == _DEEPEST_CHAIN:
-        raise InputError(f"{where}.preset: presets build on each other without end")
-    preset = os.fspath(preset)
-    if is_path(preset):
-        path = folder / preset
-    else:
-        try:
-            path = preset_path(kind, preset)
-        except InputError as error:
-            raise InputError(f"{where}.preset: {error}") from None
-    try:
-        base = read_toml(path)
-    except InputError as error:
-        raise InputError(f"{where}.preset: {error}") from None
-    return merged(_resolved(kind, base, path.parent, str(path), depth + 1), own)
-
-
-def with_absolute_paths(kind: str, table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Make the paths in a section absolute.
-
-    Parameters
-    ----------
-    kind : str
-        Which section it is.
-    table : mapping
-        The section.
-    folder : Path
-        What its relative paths start from.
-
-    Returns
-    -------
-    dict
-        A copy.
-    """
-    result = dict(table)
-    if kind == "wheelrail":
-        for key in ("wheel", "rail"):
-            spec = result.get(key)
-            if isinstance(spec, str):
-                spec = spec_from_text(spec)
-            if isinstance(spec, Mapping):
-                result[key] = with_absolute_paths("profile", spec, folder)
-    keys = {"profile": ("file",), "support": ("file",), "motion": ("record", "vertical")}
-    for key in keys.get(kind, ()):
-        value = result.get(key)
-        if isinstance(value, os.PathLike):
-            value = os.fspath(value)
-        if isinstance(value, str) and value:
-            result[key] = str((folder / value).absolute())
-    return result
+    return layers.resolved(kind, _PLACE.below(kind), table, folder, where)

@@ -18,7 +18,7 @@ Each law is a file of this folder with its publication; a new one is found by ly
 from collections.abc import Callable
 from typing import NamedTuple
 
-from railquake.laws import Family
+from railquake.laws import CREEP_LAWS
 
 __all__ = ["CREEP_LAWS", "CreepLaw", "LinearForce", "linear_force", "saturation"]
 
@@ -30,9 +30,6 @@ class CreepLaw(NamedTuple):
     saturation: Callable[[float, float], float]
     """(linear force, mu N) -> factor in (0, 1] by which the linear force is reduced."""
     source: str
-
-
-CREEP_LAWS: Family[CreepLaw] = Family("creep law", "railquake.physics.creep")
 
 
 class LinearForce(NamedTuple):

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from railquake.laws import Family
+from railquake.laws import HINGE_LAWS
 
 __all__ = [
     "HINGE_LAWS",
@@ -111,9 +111,6 @@ class HingeLaw:
     abreast: Mapping[Law, Law] = field(default_factory=dict)
     standing: Callable[[Any], Any] = standing
     damage: Callable[[Any, Any], float] = known_damage
-
-
-HINGE_LAWS: Family[HingeLaw] = Family("hinge law", "railquake.physics.hinge")
 
 
 def advance(

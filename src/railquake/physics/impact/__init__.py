@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from railquake.laws import Family
+from railquake.laws import RESTITUTION_LAWS
 
 __all__ = [
     "RESTITUTION_LAWS",
@@ -55,9 +55,6 @@ class RestitutionLaw(NamedTuple):
     source: str
     hysteresis: Callable[[bool, float, float, float, float], float] = frozen_at_onset
     """chi/K now, see `frozen_at_onset`."""
-
-
-RESTITUTION_LAWS: Family[RestitutionLaw] = Family("restitution law", "railquake.physics.impact")
 
 
 def hysteresis(
