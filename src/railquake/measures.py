@@ -12,12 +12,12 @@ from dataclasses import KW_ONLY, dataclass
 from enum import Enum
 
 __all__ = [
-    "MEASURES", "AttributeOf", "EventTime", "Intensity", "Kind", "Measure", "Place", "StateRow",
-    "StateTime", "WorkedOut", "all_keys", "correlated", "intensities", "named", "of_kind", "paired",
-    "printed", "short_name", "telling_of_the_step",
+    "MEASURES", "STANDARD_GRAVITY", "AttributeOf", "EventTime", "Intensity", "Kind", "Measure",
+    "Place", "StateRow", "StateTime", "WorkedOut", "all_keys", "correlated",
+    "intensities", "named", "of_kind", "paired", "printed", "short_name", "telling_of_the_step",
 ]  # fmt: skip
 
-_STANDARD_GRAVITY = 9.80665  # m/s2
+STANDARD_GRAVITY = 9.80665  # m/s2
 _SUPERSCRIPTS = str.maketrans("23", "²³")
 
 
@@ -201,7 +201,7 @@ MEASURES: tuple[Measure, ...] = (
     # --- the ground
     Measure(
         "pga_m_s2", Kind.GROUND, "m/s2", "PGA", "peak ground acceleration",
-        factor=1.0 / _STANDARD_GRAVITY, shown_unit="g", meaning="of the lateral motion, scaled",
+        factor=1.0 / STANDARD_GRAVITY, shown_unit="g", meaning="of the lateral motion, scaled",
         place=AttributeOf("system.ground.pga"),
         intensity=Intensity(5, "pga", "Peak Ground Acceleration", "mps2"),
     ),

@@ -39,6 +39,8 @@ from railquake.physics.hinge import HINGE_LAWS
 from railquake.physics.profiles import Geometry
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from railquake.inputs.ground_motion import GroundMotion
     from railquake.inputs.scenario import Scenario
 
@@ -135,15 +137,17 @@ class System:
         """
         alone = target.lanes == 1 and target is not CUDA
         engine = "device" if target is CUDA else "alone" if alone else "abreast"
-        entry = {
+        entries: dict[str, Callable[..., Any]] = {
             "alone": frames.march,
             "abreast": frames.march_abreast,
             "device": frames.march_on_device,
-        }[engine]
+        }
         linearised = not alone or self.scenario.solver.hinge_solve == "linearised"
         laws = chosen({**self.choices, "engine": engine})
         laws.update(solving(self.structure.hinge, linearised, abreast=not alone))
-        return bind(entry, target, laws, _layout(self.structure, self.vehicle, target.lanes))
+        return bind(
+            entries[engine], target, laws, _layout(self.structure, self.vehicle, target.lanes)
+        )
 
 
 def assemble(scenario: Scenario) -> System:
@@ -300,13 +304,11 @@ def _rounded_down(value: float) -> float:
     return math.floor(value / unit) * unit
 
 
-def _drive(
-    scenario: Scenario, ground: GroundMotion, frame: float, structure: Structure
-) -> Array:
+def _drive(scenario: Scenario, ground: GroundMotion, frame: float, structure: Structure) -> Array:
     """Ground acceleration at the frames' ends, by linear interpolation of the records."""
     frames = max(1, math.ceil(ground.duration / frame - 1e-9))
     times = frame * np.arange(frames + 1)
-    columns = [np.interp(times, ground.time, ground.acceleration)]
+    columns: list[Any] = [np.interp(times, ground.time, ground.acceleration)]
     vertical = scenario.vertical_motion()
     if vertical is None:
         columns.append(np.zeros(frames + 1))

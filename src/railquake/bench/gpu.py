@@ -15,7 +15,7 @@ from itertools import cycle, islice
 from typing import TYPE_CHECKING, Any
 
 from railquake.inputs.scenario import scenario
-from railquake.physics.kernel import device_name, missing_for_cuda
+from railquake.march.compiler import device_name, missing_for_cuda
 from railquake.run.assess import versions
 from railquake.run.many import simulate_many
 

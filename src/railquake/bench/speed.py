@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from railquake.errors import InputError
 from railquake.fem.pier import time_opensees_pier
 from railquake.inputs.scenario import scenario
-from railquake.physics.kernel import lockstep_target
+from railquake.march.compiler import lockstep_target
 from railquake.run.assess import versions
 from railquake.run.many import simulate_many
 from railquake.run.simulate import simulate

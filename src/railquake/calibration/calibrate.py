@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from railquake.calibration.column import GRAVITY, Column
+from railquake.calibration.column import Column
 from railquake.calibration.cyclic import EFFECTIVE, Loop
 from railquake.calibration.dynamic import Check, check_motion
 from railquake.calibration.fit import STARTS, Fit, fit_hinge
@@ -18,6 +18,7 @@ from railquake.calibration.section import concrete_modulus, fibre_column, gross_
 from railquake.errors import InputError
 from railquake.fem.column import FibreColumn, push_column
 from railquake.inputs.support import Pier
+from railquake.measures import STANDARD_GRAVITY as GRAVITY
 
 __all__ = ["Calibration", "LoopFacts", "calibrate_column", "calibrate_hinge", "loop_facts"]
 

@@ -30,7 +30,6 @@ __all__ = ["Column", "Concrete", "Protocol", "Section", "Steel", "load_column"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-GRAVITY = 9.80665
 Ratio = Annotated[float, Quantity("number", "positive"), Field(lt=1.0)]
 
 

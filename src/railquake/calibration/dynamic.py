@@ -17,7 +17,7 @@ import numpy as np
 from railquake.fem.column import FibreColumn, shake_column
 from railquake.inputs.scenario import scenario
 from railquake.inputs.support import Pier
-from railquake.physics.pier import natural_frequencies, stiffness_matrix
+from railquake.physics import pier as pier_model
 from railquake.run.simulate import simulate
 
 if TYPE_CHECKING:
@@ -88,15 +88,10 @@ class Check:
 def rayleigh_coefficients(pier: Pier) -> tuple[float, float]:
     """A (1/s) and b (s) of the pier's damping, C = a M + b K."""
     mass = np.array([pier.mass, pier.base_rotational_inertia, pier.rotational_inertia])
-    stiffness = stiffness_matrix(
+    stiffness = pier_model.stiffness_matrix(
         pier.youngs_modulus, pier.second_moment_of_area, pier.length, pier.bouc_wen.k0
     )
-    first, second = natural_frequencies(mass, stiffness)[:2]
-    ratio = pier.damping_ratio
-    return (
-        float(2.0 * ratio * first * second / (first + second)),
-        float(2.0 * ratio / (first + second)),
-    )
+    return pier_model.rayleigh_coefficients(mass, stiffness, pier.damping_ratio)
 
 
 def check_motion(

@@ -10,6 +10,7 @@ from railquake.calibration.calibrate import Calibration, LoopFacts, loop_facts
 from railquake.calibration.preset import preset_text
 from railquake.errors import InputError
 from railquake.files import whole_folder
+from railquake.measures import STANDARD_GRAVITY
 from railquake.messages import reason
 from railquake.plots.calibration import (
     HistoryPair,
@@ -131,7 +132,7 @@ def summary_lines(calibration: Calibration) -> list[str]:
             beyond = "; beyond the protocol's drifts" if is_beyond(calibration, drift) else ""
             remark = f"{_percent(check.peak_error)}{_verdict(good, GOOD_PEAK)}{beyond}"
             lines.append(
-                f"{check.name[:26]:26} {check.pga / 9.80665:6.3f} "
+                f"{check.name[:26]:26} {check.pga / STANDARD_GRAVITY:6.3f} "
                 f"{1e3 * check.peak_reference:12.2f} {1e3 * check.peak_ours:12.2f}   {remark}"
             )
     return lines
@@ -242,7 +243,8 @@ def draw_histories(calibration: Calibration, path: Path) -> Path:
                 check.time,
                 check.reference,
                 check.ours,
-                f"PGA {check.pga / 9.80665:.2f} g; peak {1e3 * check.peak_reference:.0f} mm and "
+                f"PGA {check.pga / STANDARD_GRAVITY:.2f} g; "
+                f"peak {1e3 * check.peak_reference:.0f} mm and "
                 f"{1e3 * check.peak_ours:.0f} mm, {_percent(check.peak_error)}",
             )
             for check in calibration.checks

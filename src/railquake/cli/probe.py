@@ -224,7 +224,7 @@ def probe_creep(
     """
     import math
 
-    from railquake.assembly.system import CREEP_LAWS
+    from railquake.laws import CREEP_LAWS
     from railquake.probe import creep_force
 
     try:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from railquake.fem import opensees
-from railquake.physics.pier import natural_frequencies, stiffness_matrix
+from railquake.physics.pier import rayleigh_coefficients, stiffness_matrix
 
 if TYPE_CHECKING:
     from railquake.inputs.hinge import BoucWenHinge
@@ -84,11 +84,8 @@ def _prepare(ops: Any, pier: Pier, acceleration: Array, dt: float, gravity: floa
     initial = stiffness_matrix(
         pier.youngs_modulus, pier.second_moment_of_area, pier.length, pier.bouc_wen.k0
     )
-    first, second = natural_frequencies(mass, initial)[:2]
-    zeta = pier.damping_ratio
-    ops.rayleigh(
-        2.0 * zeta * first * second / (first + second), 0.0, 2.0 * zeta / (first + second), 0.0
-    )
+    a, b = rayleigh_coefficients(mass, initial, pier.damping_ratio)
+    ops.rayleigh(a, 0.0, b, 0.0)
     ops.constraints("Plain")
     ops.numberer("Plain")
     ops.system("ProfileSPD")

@@ -25,8 +25,8 @@ __all__ = [
     "any_flange_near",
     "clear_forces",
     "closed_patch",
-    "every_flange_near",
     "evaluated_patch",
+    "every_flange_near",
     "fetch_cells",
     "fetch_polynomials",
     "flange_near",
@@ -78,9 +78,7 @@ def no_polynomials(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
     """No table is used."""
 
 
-def patch_by_grid(
-    S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int
-) -> Patch:
+def patch_by_grid(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int) -> Patch:
     """By the grid method itself."""
     sign = 2.0 * side - 1.0
     first = geometry.flange_points if zone == 0 else 0

@@ -60,7 +60,7 @@ def block(
     released: bool = False,
 ) -> Row:
     """Rows that are met together, each with a name of its own."""
-    named = tuple(Part(*part) for part in parts)  # type: ignore[arg-type]
+    named = tuple(Part(*part) for part in parts)
     units = " or ".join(dict.fromkeys(part.unit for part in named))
     count = len(named) if rows is None else rows
     return Row(name, units, meaning, count, named, train, released)

@@ -6,13 +6,11 @@ as it runs.
 """
 
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 __all__ = ["reader", "writer"]
 
 
-@cache
 def reader(kind: type) -> Callable[..., Any]:
     """Function ``(rows, first, lane) -> kind`` that reads a block of rows.
 
@@ -26,7 +24,6 @@ def reader(kind: type) -> Callable[..., Any]:
     return _made("read", "rows, first, lane", f"return kind({values})", kind)
 
 
-@cache
 def writer(kind: type) -> Callable[..., None]:
     """Function ``(rows, first, value, lane)`` that writes a block of rows; see `reader`."""
     fields = kind._fields  # type: ignore[attr-defined]
@@ -35,7 +32,16 @@ def writer(kind: type) -> Callable[..., None]:
 
 
 def _made(verb: str, arguments: str, body: str, kind: type) -> Callable[..., Any]:
-    name = f"{verb}_{kind.__name__.lower()}"
+    key = (verb, kind)
+    if key not in _KNOWN:
+        _KNOWN[key] = _compiled(f"{verb}_{kind.__name__.lower()}", arguments, body, kind)
+    return _KNOWN[key]
+
+
+_KNOWN: dict[tuple[str, type], Callable[..., Any]] = {}  # one function a kind, however often asked
+
+
+def _compiled(name: str, arguments: str, body: str, kind: type) -> Callable[..., Any]:
     scope: dict[str, Any] = {"kind": kind, "__name__": __name__}
     exec(f"def {name}({arguments}):\n    {body}\n", scope)
     made: Callable[..., Any] = scope[name]

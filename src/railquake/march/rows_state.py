@@ -129,7 +129,7 @@ _PATCHES = (
         ),
         train=True,
     ),
-    row("NEAR", "1", "1 for each side whose flange may touch its rail before the next look", rows=2),
+    row("NEAR", "1", "1 for each side whose flange may touch before the next look", rows=2),
 )
 
 _FORCES = tuple(

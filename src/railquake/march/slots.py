@@ -18,7 +18,7 @@ from railquake.physics.creep import CREEP_LAWS
 from railquake.physics.hinge import HINGE_LAWS
 from railquake.physics.impact import RESTITUTION_LAWS
 
-__all__ = ["SLOTS", "Slot", "chosen"]
+__all__ = ["SLOTS", "Slot", "chosen", "solving"]
 
 Law = Callable[..., Any]
 Laws = Mapping[Law, Law]

@@ -13,7 +13,6 @@ import numpy as np
 
 from railquake.physics.elementary import floor_of
 from railquake.physics.profiles import (
-    POSITIVE,
     Geometry,
     Patch,
     cubic,
@@ -191,9 +190,7 @@ def climb(low: float, high: float, d0: float, d1: float) -> tuple[float, float]:
     return 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise
 
 
-def bilinear(
-    f00: float, f10: float, f01: float, f11: float
-) -> tuple[float, float, float, float]:
+def bilinear(f00: float, f10: float, f01: float, f11: float) -> tuple[float, float, float, float]:
     """Coefficients of 1, w, w_roll and w w_roll from the corners' values."""
     return f00, f10 - f00, f01 - f00, f11 - f10 - f01 + f00
 

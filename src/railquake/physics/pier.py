@@ -63,7 +63,7 @@ def natural_frequencies(mass: Array, stiffness: Array) -> Array:
 
 
 def rayleigh_coefficients(mass: Array, stiffness: Array, ratio: float) -> tuple[float, float]:
-    """A (1/s) and b (s) of C = a M + b K with the damping ratio ``ratio`` in the first two modes."""
+    """A (1/s) and b (s) of C = a M + b K: damping ratio ``ratio`` in the first two modes."""
     first, second = natural_frequencies(mass, stiffness)[:2]
     return 2.0 * ratio * first * second / (first + second), 2.0 * ratio / (first + second)
 

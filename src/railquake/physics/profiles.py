@@ -136,9 +136,7 @@ def rail_at(
     return z, dz / step
 
 
-def zone_extremum(
-    shift: float, psi: float, first: int, last: int, geometry: Geometry
-) -> Extremum:
+def zone_extremum(shift: float, psi: float, first: int, last: int, geometry: Geometry) -> Extremum:
     """Smallest gap of one zone of the right-hand wheel, and the geometry of the contact there.
 
     Parameters

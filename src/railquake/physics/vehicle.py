@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from railquake.measures import STANDARD_GRAVITY as GRAVITY
+
 __all__ = ["GRAVITY", "fixed_wheelset_modes", "free_acceleration"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
-
-GRAVITY = 9.80665  # standard, m/s2
 
 
 def free_acceleration(

@@ -6,13 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from railquake.physics import creep
+from railquake.physics.creep import CREEP_LAWS
 from railquake.plots.style import (
     BLACK,
     BLUE,
     GREEN,
     GREY,
     ORANGE,
+    RED,
     blank,
     dress,
     heading,
@@ -25,7 +26,7 @@ __all__ = ["write_creep_picture"]
 
 
 def write_creep_picture(slope: float, limit: float, path: Path) -> Path:
-    """Draw the four laws: force over mu N against the lateral creepage, without spin.
+    """Draw all laws: force over mu N against the lateral creepage, without spin.
 
     Parameters
     ----------
@@ -43,13 +44,16 @@ def write_creep_picture(slope: float, limit: float, path: Path) -> Path:
     made = blank(7.2, 4.9)
     ax = dress(made.add_axes((0.095, 0.105, 0.88, 0.72)))
     creepage = np.linspace(0.0, 5.0 * limit / slope, 400)
-    for name, law, colour, dashes in (
-        ("Coulomb cap", creep.reduction_coulomb, GREY, "-"),
-        ("Shen-Hedrick-Elkins", creep.reduction_shen_hedrick_elkins, BLUE, "-"),
-        ("Carter", creep.reduction_carter, ORANGE, "--"),
-        ("Polach", creep.reduction_polach, GREEN, "-."),
-    ):
-        force = [slope * xi * law(slope * xi, limit) / limit for xi in creepage]
+    styles = {
+        "coulomb": ("Coulomb cap", GREY, "-"),
+        "she": ("Shen-Hedrick-Elkins", BLUE, "-"),
+        "carter": ("Carter", ORANGE, "--"),
+        "polach": ("Polach", GREEN, "-."),
+    }
+    for law in dict.fromkeys((*styles, *CREEP_LAWS)):
+        name, colour, dashes = styles.get(law, (law, RED, ":"))
+        saturation = CREEP_LAWS[law].saturation
+        force = [slope * xi * saturation(slope * xi, limit) / limit for xi in creepage]
         ax.plot(1e3 * creepage, force, color=colour, linestyle=dashes, linewidth=1.6, label=name)
     start = np.array([0.0, 1.15 * limit / slope])
     ax.plot(1e3 * start, slope * start / limit, color=BLACK, linewidth=0.8, linestyle=":",
@@ -60,7 +64,7 @@ def write_creep_picture(slope: float, limit: float, path: Path) -> Path:
     legend(ax)
     heading(
         made,
-        "Lateral creep force without spin, four laws",
+        f"Lateral creep force without spin, {len(CREEP_LAWS)} laws",
         f"f₂₂ = {1e-6 * slope:.4g} MN, friction × load = {1e-3 * limit:.4g} kN",
     )
     return save(made, path)

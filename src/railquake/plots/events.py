@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from railquake.inputs.support import Pier
-from railquake.measures import short_name
+from railquake.measures import STANDARD_GRAVITY, short_name
 from railquake.plots.style import BLACK, FAINT, GREEN, ORANGE, PURPLE, RED, plain
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ EVENT_COLOURS = {
 }
 EVENT_LABELS = {"onset": "onset of slide-off"}
 FINAL = ("derailed", "overturned")
-STANDARD_GRAVITY = 9.80665
 
 
 def run_title(response: Response) -> str:

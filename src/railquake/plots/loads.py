@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.physics import constant, state
+from railquake.physics.derailment import least_load
 from railquake.plots.events import (
     draw_events,
     leaves,
@@ -42,8 +42,6 @@ __all__ = ["write_wheel_loads"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-LEAST_LOAD = 0.1  # of the weight: with less on the rails, Y/Q means little
-
 
 def write_wheel_loads(response: Response, path: Path) -> Path:
     """Draw vertical loads, lateral force and Y/Q, as they are and low-passed."""
@@ -54,7 +52,7 @@ def write_wheel_loads(response: Response, path: Path) -> Path:
     times = response.times[shown]
     static = response.system.static_wheel_load
     corner = response.system.scenario.solver.lateral_force_filter
-    friction = float(response.system.constants[constant.FRICTION, 0])
+    friction = float(response.system.constants[response.system.layout.constant.FRICTION, 0])
     draw_events(axes[0], response, span)
 
     def channel(name: str) -> Array:
@@ -86,7 +84,7 @@ def write_wheel_loads(response: Response, path: Path) -> Path:
     legend(axes[2])
 
     total = smooth["left"] + smooth["right"]
-    enough = total > LEAST_LOAD * 2e-3 * static
+    enough = total > least_load(2e-3 * static)
     ratio = np.where(enough, lateral_smooth / np.where(enough, total, 1.0), np.nan)
     _thick(axes[3], times, ratio, RED, "Y/Q of the whole section")
     for sign in (-1.0, 1.0):
@@ -94,7 +92,7 @@ def write_wheel_loads(response: Response, path: Path) -> Path:
         axes[3].axhline(sign * friction, color=BLACK, linewidth=0.9, linestyle=":", label=text)
     reach = 1.2 * max(friction, float(np.nanmax(np.abs(ratio))), 1e-3)
     axes[3].set_ylim(-reach, reach)
-    largest = float(response.end[state.PEAK_DERAILMENT_COEFFICIENT, 0])
+    largest = float(response.end[response.system.layout.state.PEAK_DERAILMENT_COEFFICIENT, 0])
     remark(axes[3], f"largest on the wheels of one side: {largest:.2f}")
     label(axes[3], "time, s", "lateral force over\nvertical load, 1")
     legend(axes[3])

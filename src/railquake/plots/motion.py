@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from railquake.measures import STANDARD_GRAVITY
 from railquake.plots.style import (
     BLUE,
     GREY,
@@ -28,7 +29,6 @@ __all__ = ["write_motion_picture"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-STANDARD_GRAVITY = 9.80665
 LONGEST_PERIOD = 5.0
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from railquake.measures import STANDARD_GRAVITY
 from railquake.plots.style import (
     BLACK,
     BLUE,
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
     from railquake.suite.spectra import SuiteSpectra
 
 __all__ = ["draw_suite", "write_suite_picture"]
-
-STANDARD_GRAVITY = 9.80665
 
 
 def draw_suite(

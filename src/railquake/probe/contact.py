@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from railquake.assembly.geometry import FLOOR, STEEPEST, build_geometry
 from railquake.errors import InputError
-from railquake.physics.contact import effective_modulus, hertz_coefficients, hertz_lookup
+from railquake.physics.hertz import effective_modulus, hertz_coefficients, hertz_lookup
 from railquake.physics.profiles import Geometry, zone_extremum
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from railquake.assembly.system import CREEP_LAWS
-from railquake.physics.creep import kalker_coefficients
+from railquake.physics.creep import CREEP_LAWS, linear_force
+from railquake.physics.creep.kalker import kalker_coefficients
 
 __all__ = ["creep_force"]
 
@@ -32,7 +32,8 @@ def creep_force(
         Of the wheel relative to the rail: lateral, 1, and about the normal, 1/m.
     friction, shear_modulus, poisson : float
         mu, G (Pa), nu.
-    law : {"she", "coulomb", "carter", "polach"}
+    law : str
+        Name of a creep law.
 
     Returns
     -------
@@ -43,5 +44,6 @@ def creep_force(
     _, c22, c23 = kalker_coefficients(np.array([a / b]), poisson)
     f22 = shear_modulus * a * b * float(c22[0])
     f23 = shear_modulus * (a * b) ** 1.5 * float(c23[0])
-    linear = -f22 * creepage - f23 * spin
-    return linear * CREEP_LAWS[law](linear, friction * load), f22
+    # the creepage is v_t / V
+    linear = sum(linear_force(f22, f23, creepage, 1.0, spin))
+    return linear * CREEP_LAWS[law].saturation(linear, friction * load), f22

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.assembly.statics import UNKNOWN_DEGRADATION
-from railquake.assembly.system import hinge_parameters
+from railquake.assembly.hinge import drive_hinge
 from railquake.errors import InputError
-from railquake.physics import boucwen
 
 if TYPE_CHECKING:
     from railquake.inputs.hinge import BoucWenHinge
@@ -41,24 +38,13 @@ def run_hinge(hinge: BoucWenHinge, rotation: Array, *, elastic: bool = False) ->
     InputError
         If the iteration does not converge in a step.
     """
-    parameters = hinge_parameters(hinge, tolerance=1e-13, iterations=200)
-    law = boucwen.advance_elastic if elastic else boucwen.advance
-    x = z = eps = x_max = 0.0
-    rows = np.empty((len(rotation), 3))
-    for k, target in enumerate(rotation):
-        step = float(target) - x
-        try:
-            _, z_new, eps, x_max, moment, _, correction, *_ = law(
-                x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, step, 0.0, *parameters
-            )
-        except ArithmeticError:  # a number too large for a float
-            z_new = correction = math.nan
-        if not abs(correction) <= max(parameters[-2], 1e-15 * abs(z_new)):
-            raise InputError(
-                f"path, row {k + 1}: the hinge does not converge over a step of {step:.3g} rad; "
-                "take smaller steps, in rad"
-            )
-        x, z = float(target), z_new
-        damage = boucwen.damage_index(eps, x_max, parameters[5], parameters[6])
-        rows[k] = moment, z, damage
-    return rows
+    law = "elastic" if elastic else "bouc-wen"
+    driven = drive_hinge(law, hinge, rotation, tolerance=1e-13, iterations=200)
+    if driven.solved < len(rotation):
+        k = driven.solved
+        step = float(rotation[k]) - (float(rotation[k - 1]) if k else 0.0)
+        raise InputError(
+            f"path, row {k + 1}: the hinge does not converge over a step of {step:.3g} rad; "
+            "take smaller steps, in rad"
+        )
+    return np.column_stack([driven.moment, driven.state("z"), driven.damage])

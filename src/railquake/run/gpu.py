@@ -16,7 +16,6 @@ import numpy as np
 from railquake.errors import InputError
 from railquake.march.compiler import CUDA, copy_to_device, device_stream, missing_for_cuda
 from railquake.memory import Bounded
-
 from railquake.physics.profiles import Geometry
 
 if TYPE_CHECKING:

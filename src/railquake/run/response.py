@@ -151,7 +151,11 @@ class Response:
         import xarray
 
         variables = {
-            kept.name: ("time_s", self.frames[:, k], {"units": kept.unit, "long_name": kept.meaning})
+            kept.name: (
+                "time_s",
+                self.frames[:, k],
+                {"units": kept.unit, "long_name": kept.meaning},
+            )
             for k, kept in enumerate(channels(self.system))
         }
         return xarray.Dataset(variables, coords={"time_s": ("time_s", self.times, {"units": "s"})})

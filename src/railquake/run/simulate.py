@@ -10,9 +10,9 @@ import numpy as np
 
 from railquake.assembly import System, assemble
 from railquake.march.compiler import SCALAR, Target
+from railquake.physics.derailment import DERAILED, OVERTURNED
 from railquake.run.assess import assess
 from railquake.run.audit import audit
-from railquake.physics.derailment import DERAILED, OVERTURNED
 from railquake.run.response import Channel, Response, channels
 from railquake.run.time_step import TimeStep, search_time_step
 

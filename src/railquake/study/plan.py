@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
-from railquake.physics.kernel import lockstep_target
+from railquake.march.compiler import lockstep_target
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from railquake.measures import STANDARD_GRAVITY as GRAVITY
+
 if TYPE_CHECKING:
     from railquake.assembly import System
     from railquake.inputs.ground_motion import GroundMotion
 
 __all__ = ["GRAVITY", "block", "disturbed", "motion", "pair_of"]
-
-GRAVITY = 9.80665  # m/s2
 
 
 def block(mass: float, roll_inertia: float, height: float) -> dict[str, Any]:
@@ -66,13 +66,16 @@ def disturbed(
         Contact forces and accelerations of the first step are still those at rest, as if it had
         been let go just now.
     """
-    from railquake.physics import state
-    from railquake.physics.vehicle import kernel_order
+    from railquake.march.order import kernel_order
 
     start = system.start.copy()
     dofs = len(system.vehicle.mass)
-    place = state.VEHICLE + np.argsort(kernel_order(dofs))
-    for changes, pier, body in ((moved, state.U, place), (moving, state.U_V, place + dofs)):
+    state = system.layout.state
+    place = np.argsort(kernel_order(dofs))
+    for changes, pier, body in (
+        (moved, state.STRUCTURE_X, state.VEHICLE_X + place),
+        (moving, state.STRUCTURE_V, state.VEHICLE_V + place),
+    ):
         for name, values in changes.items():
             rows = np.arange(pier, pier + 3)
             if name != "pier":

@@ -60,7 +60,7 @@ def promised(law: str, restitution: float) -> float:
 def bounce(law: str, restitution: float) -> tuple[np.ndarray, np.ndarray]:
     """Times and downward speeds, from just before the impact to just after."""
     import railquake as rq
-    from railquake.physics.kernel import PYTHON
+    from railquake.march.compiler import PYTHON
 
     frames = 50
     case: dict[str, Any] = {

@@ -60,7 +60,7 @@ def compare(data: Path | None) -> Outcome:
 def slide(friction: float, way: float) -> tuple[float, float]:
     """Contact angle in the track's axes, and Y/Q of the right-hand wheel."""
     import railquake as rq
-    from railquake.physics.kernel import PYTHON
+    from railquake.march.compiler import PYTHON
 
     case: dict[str, Any] = {
         "vehicle": block(4000.0, 2000.0, RADIUS),

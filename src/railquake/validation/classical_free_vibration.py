@@ -80,7 +80,6 @@ def pier_modes(
 def let_pier_go(shape: np.ndarray, seconds: float) -> tuple[np.ndarray, np.ndarray]:
     """Times, and (u, theta_1, theta_2) from there on."""
     import railquake as rq
-    from railquake.physics import state
 
     case: dict[str, Any] = {
         "support": {
@@ -92,7 +91,8 @@ def let_pier_go(shape: np.ndarray, seconds: float) -> tuple[np.ndarray, np.ndarr
     }  # fmt: skip
     system = disturbed(rq.assemble(rq.scenario(**case)), {"pier": shape.tolist()}, {})
     mass, stiffness = pier_matrices()
-    system.start[state.U_A : state.U_A + 3, 0] = -(stiffness @ shape) / mass
+    first = system.layout.state.STRUCTURE_A
+    system.start[first : first + 3, 0] = -(stiffness @ shape) / mass
     response = rq.simulate(system)
     names = ("bridge_displacement_m", "hinge_rotation_rad", "top_rotation_rad")
     return response.times, np.column_stack([response.channel(name) for name in names])

@@ -55,7 +55,7 @@ def compare(data: Path | None) -> Outcome:
 def slide(friction: float, ground: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times, lateral shifts and lateral forces on the track."""
     import railquake as rq
-    from railquake.physics.kernel import PYTHON
+    from railquake.march.compiler import PYTHON
 
     case: dict[str, Any] = {
         "vehicle": block(MASS, 2000.0, 0.4),

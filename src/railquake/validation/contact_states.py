@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from railquake.assembly.geometry import build_geometry
 from railquake.inputs.wheelrail import WheelRail
-from railquake.physics.contact import effective_modulus, hertz_coefficients
+from railquake.physics.hertz import effective_modulus, hertz_coefficients
 from railquake.physics.profiles import Geometry, rail_at, zone_contact, zone_extremum
 from railquake.validation.reference import columns, numbers_beside, toml
 

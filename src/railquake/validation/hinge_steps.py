@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from railquake.assembly.statics import UNKNOWN_DEGRADATION
-from railquake.assembly.system import hinge_parameters
+from railquake.assembly.hinge import drive_hinge
 from railquake.inputs.hinge import BoucWenHinge
-from railquake.physics.boucwen import advance
-from railquake.physics.kernel import PYTHON, SCALAR, bind
+from railquake.march.compiler import PYTHON, SCALAR
 from railquake.validation.comparison import Outcome, Picture, of_peak
 from railquake.validation.pictures import write_loops
 from railquake.validation.reference import columns, header, numbers_beside
 
-__all__ = ["compare", "deviation", "drive", "hinge_of", "numbers"]
+__all__ = ["compare", "deviation", "hinge_of", "numbers"]
 
 TITLE = "The hinge: every step of two cyclic histories"
 SOURCE = """OpenSees' material `DegradingPinchedBW` (Python wheel `opensees` 0.1.32, its tolerance
@@ -58,33 +55,26 @@ def hinge_of(path: Path) -> BoucWenHinge:
     return BoucWenHinge(**values)
 
 
-def drive(law: Callable[..., Any], parameters: tuple[float, ...], path: Array) -> Array:
-    """Moments along the rotations, with the guesses and the memory that the pier's step uses.
+def moments(name: str, tolerance: float, target: Any) -> Array:
+    """Ours for the path of a set; ``tolerance`` of z as in `Solver`.
 
     Raises
     ------
     ArithmeticError
         If Newton's method does not converge in a step.
     """
-    x = z = z_step = eps = x_max = 0.0
-    known = UNKNOWN_DEGRADATION
-    moments = []
-    for k, target in enumerate(path):
-        dx, z_new, eps, x_max, moment, _, correction, *known = law(
-            x, z, z + z_step, eps, x_max, *known, target - x, 0.0, *parameters
-        )
-        if not abs(correction) <= parameters[-2]:
-            raise ArithmeticError(f"the hinge does not converge in step {k}")
-        x, z, z_step = x + dx, z_new, z_new - z
-        moments.append(moment)
-    return np.array(moments)
-
-
-def moments(name: str, tolerance: float, target: Any) -> Array:
-    """Ours for the path of a set; ``tolerance`` of z as in `Solver`."""
-    path = numbers(name)
-    parameters = hinge_parameters(hinge_of(path), tolerance, 50)
-    return drive(bind(advance, target).call, parameters, columns(path)["x"])
+    path = columns(numbers(name))["x"]
+    driven = drive_hinge(
+        "bouc-wen",
+        hinge_of(numbers(name)),
+        path,
+        tolerance=tolerance,
+        iterations=50,
+        target=target,
+    )
+    if driven.solved < len(path):
+        raise ArithmeticError(f"the hinge does not converge in step {driven.solved}")
+    return driven.moment
 
 
 def deviation(name: str, tolerance: float, target: Any) -> float:

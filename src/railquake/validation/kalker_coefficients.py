@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from railquake.physics.creep import kalker_coefficients
+from railquake.physics.creep.kalker import kalker_coefficients
 from railquake.probe import creep_force
 from railquake.validation.comparison import Outcome, Picture, Result, at_most, relative
 from railquake.validation.reference import columns, numbers_beside

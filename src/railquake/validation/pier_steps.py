@@ -9,6 +9,7 @@ import numpy as np
 
 from railquake.inputs.ground_motion import read_motion
 from railquake.inputs.support import Pier
+from railquake.measures import STANDARD_GRAVITY
 from railquake.validation.comparison import Outcome, Picture, of_peak, relative
 from railquake.validation.pictures import write_histories
 from railquake.validation.reference import columns, paper_record
@@ -51,7 +52,7 @@ def compare(data: Path | None) -> Outcome:
         pier = Pier.from_preset("bart-berkeley", {"hinge": hinge, "bouc_wen": {"m": 1.0}})
         expected = columns(data / file)
         time = DT * np.arange(1, round(expected["t"][-1] / DT) + 1)
-        ground = np.interp(time, motion.time, motion.acceleration * (GRAVITY / 9.80665))
+        ground = np.interp(time, motion.time, motion.acceleration * (GRAVITY / STANDARD_GRAVITY))
         found = march_pier(pier, ground, DT)
         printed = np.rint(expected["t"][1:] / DT).astype(int) - 1
         for k, (name, unit) in enumerate(UNITS.items()):

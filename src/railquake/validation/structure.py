@@ -1,4 +1,4 @@
-"""The pier by itself, stepped with the kernel's own integrator under a given ground motion."""
+"""The pier by itself, as a run assembles and steps it, under a given ground motion."""
 
 from __future__ import annotations
 
@@ -6,31 +6,37 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.assembly.statics import UNKNOWN_DEGRADATION
-from railquake.assembly.system import hinge_parameters
-from railquake.physics import boucwen, constant, newmark, pier, state
-from railquake.physics.kernel import SCALAR, bind
+from railquake.assembly.constants import fill_structure, fill_substeps
+from railquake.assembly.supports import Structure, structure_of
+from railquake.inputs.solver import Solver
+from railquake.march.compiler import SCALAR, bind
+from railquake.march.rows import layout_of
+from railquake.march.slots import chosen, solving
+from railquake.march.structure import move_structure_with_hinge
+from railquake.physics.hinge import HINGE_LAWS
 
 if TYPE_CHECKING:
     from railquake.inputs.support import Pier
 
-__all__ = ["QUANTITIES", "march_pier", "pier_matrices"]
+__all__ = ["QUANTITIES", "march_pier", "pier_matrices", "structure"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-# OpenSees' names of the histories, and where they stand in the state
-QUANTITIES = {"u": state.U, "theta1": state.THETA1, "theta2": state.THETA2, "M_base": state.MOMENT}
-UPPER = np.triu_indices(3)
+# OpenSees' names of the histories, and the rows where they stand
+QUANTITIES = {"u": "U", "theta1": "THETA1", "theta2": "THETA2", "M_base": "MOMENT"}
+SOLVER = Solver(newton_tolerance=1e-6, newton_max_iterations=50)
+
+
+def structure(column: Pier) -> Structure:
+    """What a run makes of the pier, without a train."""
+    return structure_of(column, SOLVER, 0.0)
 
 
 def pier_matrices(column: Pier) -> tuple[Array, Array, Array, Array]:
     """Diagonal of the mass, damping, stiffness without the hinge, and with it before it yields."""
-    mass = np.array([column.mass, column.base_rotational_inertia, column.rotational_inertia])
-    bare = pier.stiffness_matrix(
-        column.youngs_modulus, column.second_moment_of_area, column.length, 0.0
-    )
-    initial = bare + np.diag([0.0, column.bouc_wen.k0, 0.0])
-    return mass, pier.rayleigh_damping(mass, initial, column.damping_ratio), bare, initial
+    made = structure(column)
+    initial = made.stiffness + np.diag([0.0, made.parameters.k0, 0.0])
+    return made.mass, made.damping, made.stiffness, initial
 
 
 def march_pier(column: Pier, ground: Array, dt: float) -> Array:
@@ -54,22 +60,19 @@ def march_pier(column: Pier, ground: Array, dt: float) -> Array:
     ArithmeticError
         If Newton's method does not converge in a step.
     """
-    mass, damping, bare, _ = pier_matrices(column)
-    q = np.zeros((constant.VEHICLE, 1))
-    q[constant.DT], q[constant.RATE] = dt, 1.0 / dt
-    q[constant.PIER_LOAD] = column.mass
-    q[constant.M_U : constant.M_U + 3, 0] = mass
-    q[constant.K : constant.K + 6, 0] = bare[UPPER]
-    q[constant.C : constant.C + 6, 0] = damping[UPPER]
-    effective = newmark.effective_matrix(np.diag(mass), damping, bare, dt)
-    q[constant.FLEX : constant.FLEX + 6, 0] = np.linalg.inv(effective)[UPPER]
-    parameters = hinge_parameters(column.bouc_wen, 1e-6, 50)
-    q[constant.K0 : constant.K0 + len(parameters), 0] = parameters
-    s = np.zeros((state.VEHICLE, 1))
-    s[state.DAMAGE : state.DAMAGE + 5, 0] = UNKNOWN_DEGRADATION
-    laws = {boucwen.advance: boucwen.advance_elastic} if column.hinge == "elastic" else {}
-    step = bind(pier.move_structure, SCALAR, laws).call
-    rows = list(QUANTITIES.values())
+    made = structure(column)
+    law = HINGE_LAWS[made.hinge]
+    layout = layout_of(law)
+    state, constant = layout.state, layout.constant
+    q = np.zeros((layout.size.CONSTANT_ROWS, 1))
+    q[constant.DT] = dt
+    fill_structure(q[:, 0], made, layout)
+    fill_substeps(q[:, 0], 1, layout)
+    s = np.zeros((layout.size.STATE_ROWS, 1))
+    s[state.HINGE : state.HINGE + len(law.virgin), 0] = law.virgin
+    laws = {**chosen({"hinge law": made.hinge}), **solving(made.hinge, False, False)}
+    step = bind(move_structure_with_hinge, SCALAR, laws, layout).call
+    rows = [getattr(state, name) for name in QUANTITIES.values()]
     found = np.empty((len(ground), len(rows)))
     for k, acceleration in enumerate(ground):
         s[state.GROUND, 0] = acceleration

@@ -23,6 +23,9 @@ __all__ = ["Structure", "structure_of"]
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 
+UNMOVED = Offset(0.0, 0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True)
 class Structure:
     """N degrees of freedom, linear but for one hinge, and the track on one of their nodes.
@@ -57,7 +60,7 @@ class Structure:
     ground_load: Array
     hinge: str
     parameters: Any
-    offset: Offset = Offset(0.0, 0.0, 0.0, 0.0)
+    offset: Offset = UNMOVED
     reaction: float = 0.0
     degrees: tuple[int, int, int, int] = PIER
     choice: str = "node"

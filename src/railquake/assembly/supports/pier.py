@@ -21,7 +21,7 @@ def structure(support: Pier, solver: Solver, train_mass: float) -> Structure:
     """Mass, stiffness and damping of the column; the train's weight counts where it is coupled."""
     law = HINGE_LAWS[support.hinge]
     parameters = law.parameters(
-        support.bouc_wen, solver.newton_tolerance, solver.newton_max_iterations
+        support.hinge_parameters, solver.newton_tolerance, solver.newton_max_iterations
     )
     mass = np.array([support.mass, support.base_rotational_inertia, support.rotational_inertia])
     column = pier.stiffness_matrix(

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railquake.errors import InputError
+from railquake.measures import STANDARD_GRAVITY as STANDARD_GRAVITY
 
-STANDARD_GRAVITY = 9.80665
 """Standard gravity, m/s2: the only meaning of the unit "g" in this package."""
 
 MAX_SAMPLES = 50_000_000

@@ -17,8 +17,8 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-from railquake.march.compiler.cache import HOUSE, cache_folder, code_hash, source_hash
 from railquake.march.compiler import cpu, cuda
+from railquake.march.compiler.cache import HOUSE, cache_folder, code_hash, source_hash
 from railquake.march.compiler.target import CUDA, Target
 from railquake.march.rows import USUAL, Layout, Numbers
 

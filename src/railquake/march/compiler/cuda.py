@@ -166,7 +166,7 @@ def ptx(kernel: Any, arguments: tuple[Any, ...], capability: tuple[int, int]) ->
     typeof = importlib.import_module("numba").typeof
 
     signature = tuple(typeof(argument) for argument in arguments)
-    function = kernel.call.dispatcher.py_func  # type: ignore[attr-defined]
+    function = kernel.call.dispatcher.py_func
     # the functions that it calls would ask for the GPU that is there
     device = SimpleNamespace(compute_capability=capability)
     with patch("numba.cuda.dispatcher.get_current_device", lambda: device):

@@ -113,9 +113,7 @@ class HingeLaw:
     damage: Callable[[Any, Any], float] = known_damage
 
 
-def advance(
-    x: float, state: Any, parameters: Any, free_step: float, flexibility: float
-) -> Answer:
+def advance(x: float, state: Any, parameters: Any, free_step: float, flexibility: float) -> Answer:
     """Slot of the hinge's law: one step, see `HingeLaw`."""
     raise NotImplementedError("a hinge law is chosen when a kernel is bound")
 

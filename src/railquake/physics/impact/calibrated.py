@@ -2,8 +2,6 @@
 
 import math
 
-from scipy.optimize import brentq
-
 from railquake.physics.impact import RestitutionLaw
 
 __all__ = ["LAW"]
@@ -19,6 +17,7 @@ def coefficient(restitution: float) -> float:
         return math.inf
     if restitution >= 1.0:
         return 0.0
+    from scipy.optimize import brentq  # a long import, for who uses it alone
 
     def excess(alpha: float) -> float:
         return alpha * (1.0 + restitution) - math.log((1.0 + alpha) / (1.0 - alpha * restitution))
