@@ -307,8 +307,8 @@ def _rounded_down(value: float) -> float:
 def _drive(scenario: Scenario, ground: GroundMotion, frame: float, structure: Structure) -> Array:
     """Ground acceleration at the frames' ends, by linear interpolation of the records."""
     frames = max(1, math.ceil(ground.duration / frame - 1e-9))
-    times = frame * np.arange(frames + 1)
-    columns: list[Any] = [np.interp(times, ground.time, ground.acceleration)]
+    times: Array = frame * np.arange(frames + 1, dtype=np.float64)
+    columns: list[Array] = [np.interp(times, ground.time, ground.acceleration)]
     vertical = scenario.vertical_motion()
     if vertical is None:
         columns.append(np.zeros(frames + 1))
