@@ -30,6 +30,7 @@ from railquake.assembly.start import (
 from railquake.assembly.supports import Structure, structure_of
 from railquake.assembly.vehicle import VehicleMatrices, vehicle_matrices
 from railquake.errors import InputError
+from railquake.inputs.identity import files_of
 from railquake.march import frames
 from railquake.march.compiler import CUDA, SCALAR, Kernel, Target, bind
 from railquake.march.rows import Layout, layout_of
@@ -142,7 +143,8 @@ class System:
             "abreast": frames.march_abreast,
             "device": frames.march_on_device,
         }
-        linearised = not alone or self.scenario.solver.hinge_solve == "linearised"
+        how = self.scenario.solver.hinge_solve
+        linearised = not alone if how is None else how == "linearised"
         laws = chosen({**self.choices, "engine": engine})
         laws.update(solving(self.structure.hinge, linearised, abreast=not alone))
         return bind(
@@ -225,10 +227,9 @@ def _at_rest(scenario: Scenario) -> _AtRest:
 
 def _stamps(scenario: Scenario) -> tuple[tuple[str, int, int], ...]:
     """Time and size of the files that it reads; reading them says what is wrong with others."""
-    wheelrail, support = scenario.wheelrail, scenario.support
     stamps = []
-    for path in (wheelrail.wheel.file, wheelrail.rail.file, getattr(support, "file", None)):
-        if path is not None:
+    for section in (scenario.wheelrail, scenario.support):
+        for path in files_of(section):
             with suppress(OSError):
                 found = os.stat(path)
                 stamps.append((path, found.st_mtime_ns, found.st_size))
