@@ -64,8 +64,9 @@ class Claim:
         Place among the findings; steps of ten leave room between them.
     says : str
         As it stands in the report.
-    needs : tuple of (quantity, model, reference)
-        Paired comparisons that it rests on; without any one of them it is not tested.
+    needs : tuple of (str, str, str)
+        Quantity, model and reference of the paired comparisons that it rests on; without any one
+        of them it is not tested.
     judge : callable
         Evidence and those comparisons -> `Verdict`.
     """
