@@ -11,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).parent))  # for generated.py beside this f
 import generated
 
 import railquake
+from railquake.measures import Kind
 
 project = "railquake"
 author = "The railquake authors"
@@ -26,7 +27,8 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
 ]
-exclude_patterns = ["_build", "reference/channels.md"]  # the latter is included by other pages
+# the latter two are included by other pages
+exclude_patterns = ["_build", "reference/channels.md", "reference/measures-*.md"]
 templates_path = ["_templates"]
 
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
@@ -53,6 +55,7 @@ def write_reference(app):
         "case-file.md": generated.case_file(),
         "presets.md": generated.presets(),
         "channels.md": generated.channels(),
+        **{f"measures-{kind.name.lower()}.md": generated.measures(kind) for kind in Kind},
         "case.schema.json": json.dumps(generated.schema(), indent=2) + "\n",
     }
     for name, text in pages.items():

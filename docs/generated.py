@@ -10,7 +10,7 @@ from railquake.inputs.presets import list_presets
 from railquake.inputs.schema import json_schema as schema
 from railquake.inputs.units import DIMENSIONS, UNIT_DEFINITIONS, Quantity
 
-__all__ = ["case_file", "channels", "presets", "schema"]
+__all__ = ["case_file", "channels", "measures", "presets", "schema"]
 
 # Where each model stands in a case file, and what the page says of it.
 SECTIONS = (
@@ -182,3 +182,14 @@ def channels():
         (f"`{name}`", unit, text) for name, _, unit, text in known(("car", "bogie", "wheelset"))
     ]
     return table(("channel", "unit", "what"), rows)
+
+
+def measures(kind):
+    """Every measure of a kind."""
+    from railquake.measures import of_kind, printed
+
+    rows = [
+        (f"`{m.key}`", printed(m.unit), ", ".join(dict.fromkeys((m.short, m.caption))), m.meaning)
+        for m in of_kind(kind)
+    ]
+    return table(("key", "unit", "name", "what"), rows)

@@ -19,6 +19,7 @@ from railquake.cli.shared import (
     write_file,
 )
 from railquake.errors import InputError
+from railquake.measures import Measure, named
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
@@ -68,21 +69,28 @@ def _print_row(row: dict[str, Any]) -> None:
     if row["status"] in ("diverged", "not converged"):
         how = ": DO NOT USE THESE NUMBERS; take a smaller solver.dt"
     typer.echo(f"status                   {row['status']}{how}")
-    for name, key, factor, unit in (
-        ("peak ground acceleration", "pga_m_s2", 1.0 / 9.80665, "g"),
-        ("peak bridge displacement", "pbd_m", 1e3, "mm"),
-        ("peak bridge velocity", "pbv_m_s", 1.0, "m/s"),
-        ("peak bridge acceleration", "pba_m_s2", 1.0, "m/s2"),
-        ("peak hinge rotation", "hinge_rotation_peak_rad", 1e3, "mrad"),
-        ("normalised uplift", "uplift_ratio", 1.0, "(1: onset of slide-off)"),
-        ("peak lateral force", "lateral_force_filtered_peak_n", 1e-3, "kN, impacts filtered"),
-        ("time off the rail", "off_rail_time_s", 1.0, "s"),
-        ("energy residual", "energy_residual", 1.0, "of what is dissipated"),
+    for key, remark in (
+        ("pga_m_s2", ""),
+        ("pbd_m", ""),
+        ("pbv_m_s", ""),
+        ("pba_m_s2", ""),
+        ("hinge_rotation_peak_rad", ""),
+        ("uplift_ratio", "(1: onset of slide-off)"),
+        ("lateral_force_filtered_peak_n", ""),
+        ("off_rail_time_s", ""),
+        ("energy_residual", "of what is dissipated"),
     ):
-        value = row[key]
-        typer.echo(f"{name:24} {'-' if value is None else f'{factor * value:.4g} {unit}'}")
+        typer.echo(_line(named(key), row[key], remark))
     rate = 1e-6 * row["steps_per_s"]
     typer.echo(f"{'steps':24} {row['steps']} at {rate:.2f} million a second")
+
+
+def _line(measure: Measure, value: float | None, remark: str) -> str:
+    """A measure in the unit in which people read it; what its caption adds follows that."""
+    name, comma, more = measure.caption.partition(",")
+    unit = "" if measure.unit == "1" else measure.shown_unit or measure.unit
+    said = "-" if value is None else f"{measure.factor * value:.4g} {unit}{comma}{more}{remark}"
+    return f"{name:24} {said}"
 
 
 @app.command()

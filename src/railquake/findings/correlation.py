@@ -10,16 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from railquake.findings.resampling import REPLICATES, Estimate, estimates, finished
+from railquake.measures import correlated
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["MEASURES", "Correlation", "Correlations", "Difference", "correlate"]
+__all__ = ["Correlation", "Correlations", "Difference", "correlate"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
-
-MEASURES = ("pbv_m_s", "pba_m_s2", "pgv_m_s", "pga_m_s2", "sa_t1_m_s2")
-"""What the uplift is held against; the first is the paper's choice."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +100,7 @@ class Correlations:
 def correlate(
     table: pd.DataFrame,
     response: str = "uplift_ratio",
-    measures: Iterable[str] = MEASURES,
+    measures: Iterable[str] | None = None,
     *,
     within: str | None = None,
     replicates: int = REPLICATES,
@@ -116,8 +114,9 @@ def correlate(
         Rows of a study; runs that did not come to an end are left aside.
     response : str
         Column.
-    measures : iterable of str
-        Columns; one that is missing, or the same everywhere, is named in ``missing``.
+    measures : iterable of str, optional
+        Columns, by default those that uplift is held against (`measures.correlated`); one that is
+        missing, or the same everywhere, is named in ``missing``.
     within : str, optional
         Column, such as ``level``: of the logarithms the mean over all runs with the same value is
         taken away first, so that what varies between levels does not count.
@@ -130,7 +129,7 @@ def correlate(
         All measures on the same runs: those where every one and the response are positive.
     """
     rows = finished(table)
-    names = tuple(measures)
+    names = correlated() if measures is None else tuple(measures)
     varying = [name for name in names if _varies(rows, name)]
     values = _positive_columns(rows, [response, *varying])
     kept = np.all(np.isfinite(values), axis=1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 from railquake.findings.claims import every_claim
@@ -12,6 +11,7 @@ from railquake.findings.evidence import Evidence, Outcomes
 from railquake.findings.lateral import force_ratio, level_off
 from railquake.findings.models import COUPLED, DECOUPLED, ELASTIC, MODELS, NONLINEAR
 from railquake.findings.resampling import REPLICATES, finished
+from railquake.measures import paired
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,15 +19,10 @@ if TYPE_CHECKING:
 __all__ = ["gather"]
 
 PAIRS = ((NONLINEAR, ELASTIC), *((DECOUPLED[name], name) for name in COUPLED))
-# compared in every study; what a claim needs beyond, it names itself
-QUANTITIES = (
-    "pbd_m", "pbv_m_s", "pba_m_s2", "top_rotation_peak_rad", "uplift_ratio",
-    "lateral_force_filtered_peak_n",
-)  # fmt: skip
 
 
 def gather(
-    table: pd.DataFrame, friction: Any = math.nan, *, replicates: int = REPLICATES, seed: int = 0
+    table: pd.DataFrame, friction: Any = None, *, replicates: int = REPLICATES, seed: int = 0
 ) -> Evidence:
     """All statistics of a study.
 
@@ -35,8 +30,8 @@ def gather(
     ----------
     table : DataFrame
         Rows of a study; with ``sa_t1_m_s2`` if that is to be compared.
-    friction : float or array_like
-        mu of wheel on rail, of all runs or of each; NaN leaves the lateral force out.
+    friction : float or array_like, optional
+        mu of wheel on rail, of all runs or of each; by default the rows' own.
     replicates, seed : int
         Of the bootstrap.
 
@@ -64,8 +59,11 @@ def gather(
 
 
 def _compared() -> dict[tuple[str, str, str], None]:
-    """Quantity, model and reference of every comparison, each once."""
-    always = [(quantity, *pair) for pair in PAIRS for quantity in QUANTITIES]
+    """Quantity, model and reference of every comparison, each once.
+
+    What is compared in every study, and what a claim needs beyond.
+    """
+    always = [(quantity, *pair) for pair in PAIRS for quantity in paired()]
     return dict.fromkeys([*always, *(key for claim in every_claim() for key in claim.needs)])
 
 

@@ -24,20 +24,23 @@ SLOWER = 0.8
 ANY_LEVEL = 0.25  # of the slope before the knee: flatter than that it has levelled off
 
 
-def force_ratio(table: pd.DataFrame, friction: Any) -> Any:
+def force_ratio(table: pd.DataFrame, friction: Any = None) -> Any:
     """Peak filtered lateral force over friction times the train's weight.
 
     Parameters
     ----------
     table : DataFrame
         Rows of a study.
-    friction : float or array_like
-        mu, of all runs or of each.
+    friction : float or array_like, optional
+        mu, of all runs or of each; by default the rows' own.
 
     Returns
     -------
     array, shape (runs,)
+        NaN where mu is not known.
     """
+    if friction is None:
+        friction = table.get("friction", math.nan)
     weight = 2.0 * table["wheel_load_static_n"].to_numpy(dtype=float)
     force = table["lateral_force_filtered_peak_n"].to_numpy(dtype=float)
     return force / (np.asarray(friction, dtype=float) * weight)

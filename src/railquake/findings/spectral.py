@@ -1,4 +1,4 @@
-"""Spectral acceleration at the pier's first period, a measure that no run needs."""
+"""Spectral acceleration at the pier's first period, for tables made before rows carried it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from railquake.errors import InputError
 from railquake.inputs.support import Pier
-from railquake.physics.pier import natural_frequencies, stiffness_matrix
+from railquake.run.spectral import DAMPING, first_period
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,30 +20,10 @@ if TYPE_CHECKING:
 
 __all__ = ["first_period", "with_spectral_acceleration"]
 
-DAMPING = 0.05
 MOST = 1000  # different piers and motions that are looked at
 # what does not change Sa(T1) over the scale
 _OTHERS = ("row", "level", "scale")
 _OTHER_SECTIONS = ("vehicle.", "wheelrail.", "solver.", "motion.scale")
-
-
-def first_period(pier: Pier) -> float:
-    """First natural period of a pier with its initial stiffness, without the train, s.
-
-    Parameters
-    ----------
-    pier : Pier
-
-    Returns
-    -------
-    float
-        Eq. 10 with the hinge's initial stiffness.
-    """
-    mass = np.array([pier.mass, pier.base_rotational_inertia, pier.rotational_inertia])
-    stiffness = stiffness_matrix(
-        pier.youngs_modulus, pier.second_moment_of_area, pier.length, pier.bouc_wen.k0
-    )
-    return float(2.0 * math.pi / natural_frequencies(mass, stiffness)[0])
 
 
 def with_spectral_acceleration(

@@ -9,14 +9,8 @@ from railquake.findings.comparison import PairedComparison
 from railquake.findings.resampling import Estimate
 
 __all__ = [
-    "NAMES", "capital", "chance", "interval", "listed", "number", "ratio", "sentence", "split",
+    "capital", "chance", "interval", "listed", "number", "ratio", "sentence", "split",
 ]  # fmt: skip
-
-NAMES = {
-    "pbd_m": "PBD", "pbv_m_s": "PBV", "pba_m_s2": "PBA", "pga_m_s2": "PGA", "pgv_m_s": "PGV",
-    "sa_t1_m_s2": "Sa(T₁)", "top_rotation_peak_rad": "the top’s rotation",
-    "uplift_ratio": "uplift", "lateral_force_filtered_peak_n": "the lateral force",
-}  # fmt: skip
 
 
 def number(value: float, digits: int = 2) -> str:

@@ -9,23 +9,19 @@ is done where the data do not determine it, and how intervals are found: docs/th
 `curve`     the curve with what is known about its certainty
 `probit`    the regression: likelihood, its slopes and its maximum
 `fits`      fitted parameters and their intervals: profile, sandwich, bootstrap
-`measures`  what a curve may be fitted against
 `outcomes`  which runs reached what
 `pelicun`   curves as another program reads them
 """
 
 from railquake.fragility.curve import Fragility, compare_measures
-from railquake.fragility.measures import MEASURES, Measure
 from railquake.fragility.outcomes import OUTCOMES, outcome
 from railquake.fragility.pelicun import write_csv
 from railquake.fragility.probit import LARGEST_BETA
 
 __all__ = [
     "LARGEST_BETA",
-    "MEASURES",
     "OUTCOMES",
     "Fragility",
-    "Measure",
     "compare_measures",
     "outcome",
     "write_csv",

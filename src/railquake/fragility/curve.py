@@ -12,10 +12,10 @@ import numpy as np
 
 from railquake.errors import InputError
 from railquake.fragility.fits import UNBOUNDED, Fits, bootstrap, quantile
-from railquake.fragility.measures import MEASURES
 from railquake.fragility.outcomes import FINISHED, outcome
 from railquake.fragility.pelicun import write_csv
 from railquake.fragility.probit import Array
+from railquake.measures import intensities
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,7 +35,7 @@ class Fragility:
     event : str
         What may happen.
     measure : str
-        Short name of the measure (`MEASURES`), or what the caller calls it.
+        Name of the measure (`measures.intensities`), or what the caller calls it.
     theta : float
         Median: the measure at which the probability is one half, in the measure's unit.
     beta : float
@@ -178,7 +178,7 @@ class Fragility:
             Rows of a study; those that diverged, failed or did not converge are left aside.
         event : {"onset", "derailed"}
         measure : str
-            Short name (`MEASURES`) or a column's name.
+            Name (`measures.intensities`) or a column's name.
         **options
             See `fit`.
 
@@ -191,20 +191,21 @@ class Fragility:
         InputError
             If outcome or measure is not known, or there is too little to fit to.
         """
-        column = MEASURES[measure].column if measure in MEASURES else measure
+        declared = intensities()
+        column = declared[measure].key if measure in declared else measure
         if column not in table:
-            known = [name for name, item in MEASURES.items() if item.column in table]
+            known = [name for name, item in declared.items() if item.key in table]
             raise InputError(
                 f'fragility: the table has no measure "{measure}"; known are {", ".join(known)}'
             )
         rows = table[table["status"].isin(FINISHED)]
-        short = {item.column: name for name, item in MEASURES.items()}
+        names = {item.key: name for name, item in declared.items()}
         return cls.fit(
             rows[column].to_numpy(dtype=float),
             outcome(rows, event),
             rows["record"].to_numpy() if "record" in rows else None,
             event=event,
-            measure=short.get(column, measure),
+            measure=names.get(column, measure),
             **options,
         )
 
@@ -268,8 +269,9 @@ class Fragility:
 
     def _asked(self, value: Any, measure: Mapping[str, Any]) -> Array:
         names = {self.measure}
-        if self.measure in MEASURES:
-            names.add(MEASURES[self.measure].column)
+        declared = intensities()
+        if self.measure in declared:
+            names.add(declared[self.measure].key)
         if (value is None) == (not measure) or len(measure) > 1 or not set(measure) <= names:
             found = ", ".join(measure) if measure else "nothing" if value is None else "a number"
             raise InputError(
@@ -287,7 +289,7 @@ class Fragility:
 
 
 def compare_measures(
-    table: pd.DataFrame, event: str, measures: Iterable[str] = tuple(MEASURES), **options: Any
+    table: pd.DataFrame, event: str, measures: Iterable[str] | None = None, **options: Any
 ) -> list[Fragility]:
     """Curves against several measures on the same runs, the best by AIC first.
 
@@ -296,8 +298,9 @@ def compare_measures(
     table : DataFrame
         Rows of a study.
     event : {"onset", "derailed"}
-    measures : iterable of str
-        Those that the table lacks, or that have no two different positive values, are left out.
+    measures : iterable of str, optional
+        Names, all by default; those that the table lacks, or that have no two different positive
+        values, are left out.
     **options
         See `Fragility.fit`.
 
@@ -313,8 +316,9 @@ def compare_measures(
 
     rows = table[table["status"].isin(FINISHED)]
     columns = {}
-    for name in measures:
-        column = MEASURES[name].column
+    declared = intensities()
+    for name in declared if measures is None else measures:
+        column = declared[name].key
         if column in rows:
             values = pd.to_numeric(rows[column], errors="coerce")
             if values[values > 0.0].nunique() >= 2:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from railquake.errors import InputError
-from railquake.fragility.measures import MEASURES
+from railquake.measures import intensities
 
 __all__ = ["LognormalCurve", "write_csv"]
 
@@ -45,7 +45,7 @@ def write_csv(
         By the component's identifier (a dash in it becomes a point): its limit states in order of
         severity (onset, then derailed), all against one measure.
     first_period_s : float, optional
-        Period of the spectral acceleration, where a curve is against ``sa_t1``.
+        Period of the spectral acceleration, where a curve is against that.
 
     Raises
     ------
@@ -55,25 +55,28 @@ def write_csv(
     """
     import pandas as pd
 
+    declared = intensities()
     states = max((len(limits) for limits in curves.values()), default=0)
     rows = {}
     for identifier, limits in curves.items():
         names = {curve.measure for curve in limits}
-        if len(names) != 1 or not names <= set(MEASURES):
+        if len(names) != 1 or not names <= set(declared):
             raise InputError(
                 f"{path}: {identifier}: its curves must be against one measure of "
-                f"{', '.join(MEASURES)}, found {', '.join(sorted(names)) or 'none'}"
+                f"{', '.join(declared)}, found {', '.join(sorted(names)) or 'none'}"
             )
         name = next(iter(names))
-        demand = MEASURES[name].demand_type
-        if name == "sa_t1":
+        of = declared[name].intensity
+        assert of is not None  # by `intensities`
+        demand = of.demand_type
+        if of.has_period:
             if first_period_s is None:
-                raise InputError(f"{path}: {identifier}: sa_t1 needs its period, first_period_s")
+                raise InputError(f"{path}: {identifier}: {name} needs its period, first_period_s")
             demand = f"{demand}|{first_period_s:.3g}"
         row: dict[str, Any] = {
             "Incomplete": 0,
             "Demand-Type": demand,
-            "Demand-Unit": MEASURES[name].demand_unit,
+            "Demand-Unit": of.demand_unit,
             "Demand-Offset": 0,
             "Demand-Directional": 1,
         }

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from railquake.inputs.support import Pier
+from railquake.measures import short_name
 from railquake.plots.style import BLACK, FAINT, GREEN, ORANGE, PURPLE, RED, plain
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def run_title(response: Response) -> str:
 def verdict(response: Response) -> str:
     """How it ended, in one line."""
     ratio = peak_roll(response) / response.reference_roll
-    uplift = f"peak uplift ratio {ratio:.3g} (1: onset of slide-off)"
+    uplift = f"peak {short_name('uplift_ratio')} {ratio:.3g} (1: onset of slide-off)"
     mode = response.derailment_mode
     if mode is not None:
         how = mode if mode.startswith("overturned") else f"derailed, {mode}"

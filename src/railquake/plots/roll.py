@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from railquake.measures import named
 from railquake.plots.events import (
     draw_events,
     legend_of_shades,
@@ -117,4 +118,5 @@ def _ratio_axis(ax: Axes, onset: float) -> None:
     low, high = ax.get_ylim()
     ratio.set_ylim(low / onset, high / onset)
     ratio.tick_params(labelsize=8)
-    ratio.set_ylabel("uplift ratio, 1", fontsize=9)
+    uplift = named("uplift_ratio")
+    ratio.set_ylabel(f"{uplift.short}, {uplift.unit}", fontsize=9)

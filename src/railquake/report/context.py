@@ -9,16 +9,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from railquake.errors import InputError
-from railquake.findings import Evidence, finished, gather, with_spectral_acceleration
+from railquake.findings import Evidence, finished, gather
 from railquake.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
+from railquake.report.older import completed
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from railquake.inputs.scenario import Scenario
+    from railquake.inputs.vehicle import Vehicle
     from railquake.study import StudyResults
 
 __all__ = ["LOOKS", "Context", "Look", "ReportSection", "Table", "Text"]
@@ -106,8 +105,8 @@ class Context:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """All rows, with Sa(T1)."""
-        return with_spectral_acceleration(self.results.table, self.results.scenario)
+        """All rows, whole."""
+        return completed(self.results)
 
     @cached_property
     def done(self) -> pd.DataFrame:
@@ -137,37 +136,18 @@ class Context:
         return Look(model or "all runs", COLOURS[k % 8], SYMBOLS[k % 5])
 
     @cached_property
-    def friction(self) -> Any:
-        """Mu of each row of the table; NaN where it cannot be told."""
-        table = self.table
-        if "wheelrail.friction" in table:
-            return table["wheelrail.friction"].to_numpy(dtype=float)
-        axes = [axis.column for axis in self.results.study.axes]
-        keys = [name for name in axes if "." not in name and name in table]
-        known: dict[Any, float] = {}
-        values = []
-        for row in table[["row", *keys]].to_dict("records"):
-            key = tuple(row[name] for name in keys)
-            if key not in known:
-                try:
-                    known[key] = float(self.results.scenario(int(row["row"])).wheelrail.friction)
-                except InputError:
-                    known[key] = float("nan")
-            values.append(known[key])
-        return np.array(values)
-
-    @cached_property
     def evidence(self) -> Evidence:
         """Statistics of all runs."""
         self.notify("working out statistics ...")
-        return gather(self.table, self.friction, replicates=REPLICATES)
+        return gather(self.table, replicates=REPLICATES)
 
     @cached_property
-    def first_scenario(self) -> Scenario | None:
-        """The scenario of the first row that can be made."""
+    def first_vehicle(self) -> Vehicle | None:
+        """The vehicle of the first row for which one can be made."""
+        design = self.results.design
         for row in self.table["row"].iloc[:20]:
             try:
-                return self.results.scenario(int(row))
+                return design.vehicle(design.point(int(row)))
             except InputError:
                 continue
         return None

@@ -9,19 +9,18 @@ import numpy as np
 from railquake.errors import InputError
 from railquake.fragility import (
     LARGEST_BETA,
-    MEASURES,
     OUTCOMES,
     Fragility,
     compare_measures,
     outcome,
 )
+from railquake.measures import intensities, named
 from railquake.report.chart import Band, Chart, Layer, Line, Panel, Points
 from railquake.report.context import Context, ReportSection, Table, Text
 
 __all__ = ["curves_of", "section"]
 
 TITLE = "Fragility"
-NAMES = {"pbv": "PBV", "pba": "PBA", "pbd": "PBD", "pga": "PGA", "pgv": "PGV", "sa_t1": "Sa(T₁)"}
 TITLES = {"onset": "Onset of slide-off reached", "derailed": "Derailed"}
 FEWEST_EVENTS = 1
 REPLICATES = 300
@@ -64,7 +63,7 @@ def section(context: Context) -> ReportSection:
         layers += [_outcomes(context, model, curve) for model, curve in main]
         if layers:
             panels.append(
-                Panel(TITLES[event], "PBV: peak velocity of the bridge, m/s", "probability",
+                Panel(TITLES[event], named("pbv_m_s").named_axis, "probability",
                       tuple(layers), y_range=(-0.04, 1.04))
             )  # fmt: skip
     if panels:
@@ -129,17 +128,20 @@ def _outcomes(context: Context, model: str, curve: Fragility) -> Layer:
 
 def _table(context: Context, curves: dict[tuple[str, str], Fragility]) -> Table:
     rows = []
+    known = intensities()
     for (model, event), curve in curves.items():
         best = compare_measures(context.of(model), event, replicates=0)
-        ranking = ", ".join(f"{NAMES[item.measure]} {item.aic - best[0].aic:.0f}" for item in best)
+        ranking = ", ".join(
+            f"{known[item.measure].short} {item.aic - best[0].aic:.0f}" for item in best
+        )
         rows.append(
             (
                 context.look(model).label,
                 TITLES[event].lower(),
                 f"{curve.events} of {curve.runs}",
-                NAMES[curve.measure],
+                known[curve.measure].short,
                 f"{_number(curve.theta)} ({_ends(curve.theta_interval, curve)}) "
-                f"{MEASURES[curve.measure].unit}",
+                f"{known[curve.measure].unit}",
                 f"{_number(curve.beta)} ({_betas(curve)})",
                 "; ".join(curve.flags) or "–",
                 ranking or "–",

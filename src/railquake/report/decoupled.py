@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from railquake.findings.comparison import pairs_of
 from railquake.findings.questions import DECOUPLED, ELASTIC, NONLINEAR, interval
+from railquake.measures import named
 from railquake.report.chart import Chart, Panel, Rule
 from railquake.report.context import ReportSection, Text
 from railquake.report.layers import points
@@ -18,12 +19,7 @@ __all__ = ["section"]
 
 TITLE = "Coupled against decoupled analyses (Figures 8 and 9)"
 LABELS = {ELASTIC: "elastic pier", NONLINEAR: "nonlinear pier"}
-PANELS = (
-    ("pbd_m", 1e3, "peak displacement of the bridge, mm", "Displacement"),
-    ("pba_m_s2", 1.0, "peak acceleration of the bridge, m/s²", "Acceleration"),
-    ("top_rotation_peak_rad", 1e3, "peak rotation of the top, mrad", "Rotation of the top"),
-    ("uplift_ratio", 1.0, "normalised uplift", "Uplift"),
-)
+SHOWN = ("pbd_m", "pba_m_s2", "top_rotation_peak_rad", "uplift_ratio")
 
 
 def section(context: Context) -> ReportSection:
@@ -38,7 +34,8 @@ def section(context: Context) -> ReportSection:
         )
         return ReportSection("decoupled", TITLE, (Text(text, "note"),))
     panels = []
-    for quantity, factor, label, title in PANELS:
+    for measure in map(named, SHOWN):
+        quantity, factor = measure.key, measure.factor
         layers = []
         for name in present:
             pairs = pairs_of(context.done, quantity, DECOUPLED[name], name)
@@ -58,7 +55,8 @@ def section(context: Context) -> ReportSection:
                 for name in present
             )
             panels.append(
-                Panel(f"{title}\n{said}", f"coupled: {label}", f"decoupled: {label}",
+                Panel(f"{measure.title}\n{said}", f"coupled: {measure.axis}",
+                      f"decoupled: {measure.axis}",
                       (Rule("equal", diagonal=1.0), *layers), log_x=True, log_y=True, square=True)
             )  # fmt: skip
     caption = (

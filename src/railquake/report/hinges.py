@@ -51,9 +51,9 @@ def _telling(context: Context) -> list[tuple[int, str]]:
     rows = context.done
     if "model" in rows and (rows["model"] == "coupled-nonlinear").any():
         rows = rows[rows["model"] == "coupled-nonlinear"]
-    rows = rows[rows["hinge_rotation_peak_rad"] > 0.0]
+    # whether it is plastic an older version's row may not know: the run itself tells
+    rows = rows[(rows["hinge_rotation_peak_rad"] > 0.0) & (rows["hinge_law"] != "elastic")]
     rows = rows.sort_values("hinge_rotation_peak_rad", ascending=False, kind="stable")
-    rows = _plastic(context, rows)
     if not len(rows):
         return []
     found: dict[int, str] = {int(rows["row"].iloc[0]): "largest rotation"}
@@ -65,24 +65,6 @@ def _telling(context: Context) -> list[tuple[int, str]]:
     found.setdefault(int(strongest["row"].iloc[len(strongest) // 2]), "median of its level")
     found.setdefault(int(rows["row"].iloc[len(rows) // 2]), "median of all")
     return list(found.items())[:4]
-
-
-def _plastic(context: Context, rows: pd.DataFrame) -> pd.DataFrame:
-    """Those with a plastic hinge, as far as the axes tell them apart."""
-    axes = [axis.column for axis in context.results.study.axes]
-    keys = [name for name in axes if name in rows and ("." not in name or "hinge" in name)]
-    known: dict[Any, bool] = {}
-    kept = []
-    for row in rows[["row", *keys]].to_dict("records"):
-        key = tuple(row[name] for name in keys)
-        if key not in known:
-            try:
-                support = context.results.scenario(int(row["row"])).support
-                known[key] = isinstance(support, Pier) and support.hinge == "bouc-wen"
-            except InputError:
-                known[key] = True  # the reason is told when it is run
-        kept.append(known[key])
-    return rows[np.array(kept, dtype=bool)] if kept else rows
 
 
 def _gained_most(context: Context, rows: pd.DataFrame) -> int | None:

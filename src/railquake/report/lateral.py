@@ -9,6 +9,7 @@ import numpy as np
 
 from railquake.findings import force_ratio
 from railquake.findings.lateral import LevelOff
+from railquake.measures import named
 from railquake.report.chart import Chart, Layer, Line, Panel, Rule
 from railquake.report.context import Look, ReportSection, Text
 from railquake.report.layers import points
@@ -23,16 +24,14 @@ TITLE = "Lateral force of the train on the track (Figure 10)"
 
 def section(context: Context) -> ReportSection:
     """Filtered lateral force over friction times weight, coupled and decoupled."""
-    ratio = dict(
-        zip(context.table["row"], force_ratio(context.table, context.friction), strict=True)
-    )
+    ratio = dict(zip(context.table["row"], force_ratio(context.table), strict=True))
     groups = [
         ("Coupled", [m for m in context.models if m.startswith("coupled")]),
         ("Decoupled", [m for m in context.models if m.startswith("decoupled")]),
         ("At grade", [m for m in context.models if m == "at-grade"]),
     ]
-    named = {name for _, names in groups for name in names}
-    groups.append(("Runs", [m for m in context.models if m not in named]))
+    grouped = {name for _, names in groups for name in names}
+    groups.append(("Runs", [m for m in context.models if m not in grouped]))
     panels = []
     every: list[float] = []
     for title, models in groups:
@@ -56,15 +55,18 @@ def section(context: Context) -> ReportSection:
         )
     span = (min(every) / 1.15, max(every) * 1.15)
     drawn_panels = tuple(
-        Panel(title, "PBA: peak acceleration of the track, m/s²",
+        Panel(title, named("pba_m_s2").named_axis,
               "peak lateral force / (μ × weight)", (Rule("friction × weight", y=1.0), *layers),
               log_x=True, log_y=True, y_range=span)
         for title, layers in panels
     )  # fmt: skip
-    corner = context.first_scenario.solver.lateral_force_filter if context.first_scenario else 20.0
+    corners = [
+        f"{value:g} Hz" for value in context.done["lateral_force_filter_hz"].dropna().unique()
+    ]
+    at = f" at {' or '.join(corners)}" if corners else ""
     caption = (
         "Largest lateral force of all wheels on the track, over friction times the train’s weight. "
-        f"Short impacts are left out by a low-pass at {corner:g} Hz. Lines are two joined power "
+        f"Short impacts are left out by a low-pass{at}. Lines are two joined power "
         "laws fitted to each model’s runs: a cap would be a level second piece."
     )
     chart = Chart(

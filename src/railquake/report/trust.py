@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from railquake.errors import InputError
+from railquake.measures import telling_of_the_step
 from railquake.report.chart import Chart, Panel, Points, Rule
 from railquake.report.context import ReportSection, Table, Text
 
@@ -20,7 +21,6 @@ __all__ = ["section"]
 
 TITLE = "Can these numbers be trusted?"
 BARS = {"energy_residual": 1e-3, "contact_energy_residual": 0.03}
-CHECKED = ("pbd_m", "pbv_m_s", "uplift_ratio")
 GAIN = 0.01
 FLOOR = 1e-8
 
@@ -128,13 +128,14 @@ def _halved(context: Context) -> list[Any]:
     except InputError as error:
         return [Text(f"Its error cannot be measured: {error}.", "note")]
     lines = []
+    checked = telling_of_the_step()
     for k, row in enumerate(rows):
         if found[k].get("status") not in ("safe", "onset", "derailed"):
             continue
         (words,) = context.words(context.table[context.table["row"] == row])
         changes = []
-        for name in CHECKED:
-            fine, coarse = found[k][name], float(used.at[row, name])
+        for measure in checked:
+            fine, coarse = found[k][measure.key], float(used.at[row, measure.key])
             changes.append(_per_cent(coarse / fine - 1.0) if fine else "–")
         lines.append((words, *changes, context.command(row)))
     if not lines:
@@ -144,7 +145,7 @@ def _halved(context: Context) -> list[Any]:
         "model) as they stand in the table, relative to the same with half the step. Derailed "
         "runs are left aside: their uplift grows without bound in the last moments."
     )
-    head = ("run", "PBD", "PBV", "uplift", "command")
+    head = ("run", *(measure.short for measure in checked), "command")
     return [Table(head, tuple(lines), caption)]
 
 

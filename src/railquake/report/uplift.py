@@ -9,6 +9,7 @@ import numpy as np
 
 from railquake.findings import correlate
 from railquake.findings.questions import interval
+from railquake.measures import correlated, named, short_name
 from railquake.report.chart import Chart, Layer, Line, Panel, Points, Rule
 from railquake.report.context import REPLICATES, ReportSection, Text
 from railquake.report.layers import runs
@@ -19,10 +20,6 @@ if TYPE_CHECKING:
 __all__ = ["section"]
 
 TITLE = "Uplift against the bridge’s motion (Figure 7)"
-NAMES = {
-    "pbv_m_s": "PBV", "pba_m_s2": "PBA", "pgv_m_s": "PGV", "pga_m_s2": "PGA",
-    "sa_t1_m_s2": "Sa(T₁)",
-}  # fmt: skip
 
 
 def section(context: Context) -> ReportSection:
@@ -36,19 +33,17 @@ def section(context: Context) -> ReportSection:
         )
     level = Rule("onset of slide-off", y=1.0)
     panels = []
-    for layers, measure, label, title in (
-        (velocity, "pbv_m_s", "PBV: peak velocity of the bridge, m/s",
-         "Against the bridge’s peak velocity"),
-        (acceleration, "pba_m_s2", "PBA: peak acceleration of the track, m/s²",
-         "Against its peak acceleration"),
-    ):  # fmt: skip
+    for layers, measure, title in (
+        (velocity, "pbv_m_s", "Against the bridge’s peak velocity"),
+        (acceleration, "pba_m_s2", "Against its peak acceleration"),
+    ):
         if layers:
             fits = _fits(context, models, measure)
             panels.append(
                 Panel(
                     title,
-                    label,
-                    "normalised uplift",
+                    named(measure).named_axis,
+                    named("uplift_ratio").axis,
                     (level, *layers, *fits),
                     log_x=True,
                     log_y=True,
@@ -99,11 +94,11 @@ def _correlations(context: Context, models: list[str]) -> Chart | None:
         or correlate(context.of(model), replicates=REPLICATES)
         for model in shown
     }
-    names = [name for name in NAMES if any(item.of(name) for item in found.values())]
+    names = [name for name in correlated() if any(item.of(name) for item in found.values())]
     if not names:
         return None
     places = {name: float(len(names) - k) for k, name in enumerate(names)}
-    ticks = tuple((place, NAMES[name]) for name, place in places.items())
+    ticks = tuple((place, short_name(name)) for name, place in places.items())
     panels = []
     for title, label, source, quantity in (
         ("Rank correlation over all runs", "Spearman’s ρ (1: perfect)", found, "spearman"),
@@ -128,7 +123,7 @@ def _correlations(context: Context, models: list[str]) -> Chart | None:
                 Line(f"intervals, {look.label}", look.colour, np.array(ends),
                      np.repeat(y, 3), width=1.6, in_legend=False)
             )  # fmt: skip
-            said = [f"{NAMES[i.measure]}, {look.label}: {interval(v)}"
+            said = [f"{short_name(i.measure)}, {look.label}: {interval(v)}"
                     for i, v in zip(items, values, strict=True)]  # fmt: skip
             layers.append(
                 Points(look.label, look.colour, np.array([v.value for v in values]), y,

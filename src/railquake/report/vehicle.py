@@ -25,13 +25,13 @@ def section(context: Context) -> ReportSection:
     from railquake.physics.vehicle import fixed_wheelset_modes
     from railquake.probe import mode_labels
 
-    scenario = context.first_scenario
-    if scenario is None:
+    vehicle = context.first_vehicle
+    if vehicle is None:
         return ReportSection("vehicle", "The vehicle (Table 1)", (_gone,))
-    matrices = vehicle_matrices(scenario.vehicle)
+    matrices = vehicle_matrices(vehicle)
     frequencies, _ = fixed_wheelset_modes(matrices.mass, matrices.stiffness)
-    labels = mode_labels(scenario.vehicle, matrices)
-    name = str(scenario.vehicle.name)
+    labels = mode_labels(vehicle, matrices)
+    name = str(vehicle.name)
     ours = name.startswith("bart")
     rows = []
     for k, (label, frequency) in enumerate(zip(labels, frequencies, strict=True), 1):
@@ -51,4 +51,4 @@ def section(context: Context) -> ReportSection:
     return ReportSection("vehicle", "The vehicle (Table 1)", (Table(head, tuple(rows), caption),))
 
 
-_gone = Text("The scenarios cannot be made any more: a file they name is missing.", "note")
+_gone = Text("The vehicle cannot be made any more: a file that it names is missing.", "note")

@@ -1,34 +1,25 @@
-"""From a response to one flat row: what is measured on every run."""
+"""From a response to one flat row: every measure that `railquake.measures` declares."""
 
 from __future__ import annotations
 
 import platform
+from collections.abc import Callable, Mapping
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError
+from importlib.metadata import version as installed_version
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from railquake.physics import constant, state
+from railquake import measures
+from railquake.inputs.support import Pier
+from railquake.measures import AttributeOf, EventTime, Place, StateRow, StateTime, WorkedOut
+from railquake.physics import state
+from railquake.run import spectral
 
 if TYPE_CHECKING:
     from railquake.run.response import Response
 
 __all__ = ["assess", "versions"]
-
-
-def versions() -> dict[str, str]:
-    """Versions of all that decides the numbers."""
-    return dict(_versions())
-
-
-@cache
-def _versions() -> dict[str, str]:
-    found = {"python": platform.python_version()}
-    for package in ("railquake", "numpy", "scipy", "numba"):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = "unknown"
-    return found
 
 
 def assess(response: Response) -> dict[str, Any]:
@@ -42,65 +33,109 @@ def assess(response: Response) -> dict[str, Any]:
     -------
     dict
         Flat but for ``versions``: numbers in the units that their names carry, None where
-        something did not happen.
+        something did not happen.  The keys are those of `measures.MEASURES`, in their order.
     """
-    end = response.end[:, 0]
-    q = response.system.constants[:, 0]
-    ground = response.system.ground
-    audit = response.audit
+    row = {}
+    for measure in measures.MEASURES:
+        found = _read(response, measure.place)
+        # a text may be a mapping, `versions`
+        is_plain = found is None or measure.value is str
+        row[measure.key] = found if is_plain else measure.value(found)
+    return row
 
-    def value(row: int) -> float:
-        return float(end[row])
 
-    def when(event: int) -> float | None:
-        at = float(end[state.FIRST_TIME + event])
-        return at if at >= 0.0 else None
+def _read(response: Response, place: Place) -> Any:
+    """What stands at a measure's place."""
+    match place:
+        case StateRow(name):
+            return _row(response, name)
+        case StateTime(name):
+            return _time(_row(response, name))
+        case EventTime(event):
+            return _time(_first_time(response, event))
+        case AttributeOf(path):
+            return attrgetter(path)(response)
+        case WorkedOut(function):
+            return _WORKED_OUT[function](response)
 
-    static = response.system.static_wheel_load
-    mode = response.derailment_mode
-    uplift_end = value(state.UPLIFT_END)
-    return {
-        "status": response.status,
-        "derailed": mode is not None,
-        "derailment_mode": mode,
-        "pga_m_s2": ground.pga,
-        "pgv_m_s": ground.pgv,
-        "arias_intensity_m_s": ground.arias_intensity,
-        "pbd_m": value(state.PEAK_U),
-        "pbv_m_s": value(state.PEAK_U_V),
-        "pba_m_s2": value(state.PEAK_U_A),
-        "hinge_rotation_peak_rad": value(state.PEAK_THETA1),
-        "base_moment_peak_n_m": value(state.PEAK_MOMENT),
-        "top_rotation_peak_rad": value(state.PEAK_THETA2),
-        "relative_roll_peak_rad": value(state.PEAK_ROLL),
-        "uplift_ratio": value(state.PEAK_ROLL) / q[constant.REFERENCE_ROLL],
-        "lateral_shift_peak_m": value(state.PEAK_SHIFT),
-        "wheel_load_static_n": static,
-        "wheel_load_peak_n": value(state.PEAK_LOAD),
-        "wheel_unloading_peak": 1.0 - value(state.LOWEST_LOAD) / static,
-        "lateral_force_peak_n": value(state.PEAK_LATERAL),
-        "lateral_force_filtered_peak_n": value(state.PEAK_LATERAL_FILTERED),
-        "derailment_coefficient_peak": value(state.PEAK_DERAILMENT_COEFFICIENT),
-        "flange_clearance_peak_m": value(state.PEAK_CLEARANCE),
-        "off_rail_time_s": value(state.TIME_ONE_WHEEL),
-        "detached_time_s": value(state.TIME_DETACHED),
-        "uplifts": int(value(state.UPLIFTS)),
-        "flange_contact_first_s": when(state.FLANGE_CONTACT),
-        "uplift_first_s": when(state.UPLIFT),
-        "uplift_last_end_s": uplift_end if uplift_end >= 0.0 else None,
-        "onset_first_s": when(state.ONSET),
-        "flange_over_first_s": when(state.FLANGE_OVER),
-        "derailed_s": when(state.DERAILED),
-        "overturned_s": when(state.OVERTURNED),
-        "energy_residual": audit.whole_relative,
-        "contact_energy_residual": audit.contact_relative,
-        "energy_dissipated_j": audit.dissipated,
-        "steps": response.steps,
-        "steps_per_s": response.steps / max(response.march_s, 1e-9),
-        "wall_s": response.wall_s,
-        "dt_s": response.system.dt,
-        "dt_critical_s": response.system.critical_dt,
-        "dt_error": None if response.time_step is None else response.time_step.error,
-        "contact": response.system.scenario.solver.contact,
-        "versions": versions(),
-    }
+
+# All that is known here of the state's rows: that each has a name.
+
+
+def _row(response: Response, name: str) -> float:
+    """Last value of a row of the state."""
+    return float(response.end[getattr(state, name), 0])
+
+
+def _first_time(response: Response, event: str) -> float:
+    """When an event first held, s; negative: never."""
+    return float(response.end[state.FIRST_TIME + getattr(state, event), 0])
+
+
+def _time(at: float) -> float | None:
+    return at if at >= 0.0 else None
+
+
+# --- measures that are made of several things ----------------------------------------------------
+
+
+def versions() -> dict[str, str]:
+    """Versions of all that decides the numbers."""
+    return dict(_versions())
+
+
+@cache
+def _versions() -> dict[str, str]:
+    found = {"python": platform.python_version()}
+    for package in ("railquake", "numpy", "scipy", "numba"):
+        try:
+            found[package] = installed_version(package)
+        except PackageNotFoundError:
+            found[package] = "unknown"
+    return found
+
+
+def _uplift_ratio(response: Response) -> float:
+    return _row(response, "PEAK_ROLL") / response.reference_roll
+
+
+def _wheel_unloading(response: Response) -> float:
+    return 1.0 - _row(response, "LOWEST_LOAD") / response.system.static_wheel_load
+
+
+def _speed(response: Response) -> float:
+    return response.steps / max(response.march_s, 1e-9)
+
+
+def _time_step_error(response: Response) -> float | None:
+    return None if response.time_step is None else response.time_step.error
+
+
+def _hinge_law(response: Response) -> str | None:
+    support = response.system.scenario.support
+    return support.hinge if isinstance(support, Pier) else None
+
+
+def _period(response: Response) -> float | None:
+    support = response.system.scenario.support
+    return spectral.first_period(support) if isinstance(support, Pier) else None
+
+
+def _spectral_acceleration(response: Response) -> float | None:
+    period = _period(response)
+    if period is None:
+        return None
+    return spectral.spectral_acceleration(response.system.ground, period)
+
+
+_WORKED_OUT: Mapping[str, Callable[[Response], Any]] = {
+    "derailed": lambda response: response.derailment_mode is not None,
+    "hinge_law": _hinge_law,
+    "period": _period,
+    "spectral_acceleration": _spectral_acceleration,
+    "speed": _speed,
+    "time_step_error": _time_step_error,
+    "uplift_ratio": _uplift_ratio,
+    "versions": lambda _: versions(),
+    "wheel_unloading": _wheel_unloading,
+}

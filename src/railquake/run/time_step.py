@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from railquake import measures
 from railquake.assembly import critical_time_step
 from railquake.errors import InputError
 
@@ -30,9 +31,7 @@ SAFE_SHARE = 0.5
 LONGEST = 1e-4
 """No step is longer, s: a flange may come nearer by some tenths of a millimetre in it."""
 HALVINGS = 5
-MEASURES = ("pbd_m", "pbv_m_s", "uplift_ratio")
-LEAST_UPLIFT = 0.05
-"""Smaller uplift ratios are compared as if they were this large."""
+LEAST = 1e-300  # so that nothing is divided by zero
 
 
 @dataclass(frozen=True)
@@ -69,12 +68,13 @@ class TimeStep:
     @property
     def text(self) -> str:
         """What was chosen and the error seen, in one line."""
+        *names, last = (measure.short for measure in measures.telling_of_the_step())
         kept = "" if self.error <= self.tolerance else "; NOT within the tolerance"
         return (
             f"time step: {0.5**self.halvings:g} of the longest ({SAFE_SHARE:g} of the critical "
-            f"one, at most {LONGEST:g} s); estimated error {100.0 * self.error:.2g} % of PBD, PBV "
-            f"and uplift over {self.tried} scenarios tried, {100.0 * self.tolerance:g} % "
-            f"allowed{kept}"
+            f"one, at most {LONGEST:g} s); estimated error {100.0 * self.error:.2g} % of "
+            f"{', '.join(names)} and {last} over {self.tried} scenarios tried, "
+            f"{100.0 * self.tolerance:g} % allowed{kept}"
         )
 
 
@@ -125,9 +125,9 @@ def _difference(coarse: Mapping[str, Any], fine: Mapping[str, Any]) -> float:
     if {coarse["status"], fine["status"]} & {"diverged", "not converged"}:
         return math.inf
     differences = []
-    for key in MEASURES:
-        least = LEAST_UPLIFT if key == "uplift_ratio" else 1e-300
-        differences.append(abs(coarse[key] - fine[key]) / max(abs(fine[key]), least))
+    for measure in measures.telling_of_the_step():
+        key, floor = measure.key, max(measure.step_floor or 0.0, LEAST)
+        differences.append(abs(coarse[key] - fine[key]) / max(abs(fine[key]), floor))
     return max(differences)
 
 

@@ -25,6 +25,7 @@ from railquake.study.axes import Axis, DistributionAxis, sampled
 from railquake.suite import Suite, SuiteMember
 
 if TYPE_CHECKING:
+    from railquake.inputs.vehicle import Vehicle
     from railquake.run.time_step import TimeStep
     from railquake.study.file import Study
 
@@ -169,6 +170,23 @@ class Design:
                 table = with_overrides({"motion": table}, changed)["motion"]
                 record = _motion_name(table) if self.study.suite is None else record
         return Point(row, record, level, own * factor, member_index, table, key, changes, labels)
+
+    def vehicle(self, point: Point) -> Vehicle:
+        """The vehicle of a run; its motion, and whether it can be read, do not matter.
+
+        Parameters
+        ----------
+        point : Point
+            Of `point`.
+
+        Raises
+        ------
+        InputError
+            If the inputs do not make one.
+        """
+        own = {path: value for path, value in point.changes.items() if path.startswith("vehicle.")}
+        vehicle: Vehicle = self._section("vehicle", own)[0]
+        return vehicle
 
     def scenario(self, point: Point) -> Scenario:
         """The scenario of a run.

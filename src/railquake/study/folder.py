@@ -17,7 +17,7 @@ from railquake.files import prepare_folder, reason
 from railquake.inputs.toml import dumps, read_toml
 from railquake.inputs.units import shown
 from railquake.run.time_step import TimeStep
-from railquake.study.table import distinct
+from railquake.study.table import distinct, in_columns
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -207,8 +207,7 @@ class ResultsFolder:
         for name in self.names() if names is None else names:
             path = self.parts / name
             try:
-                found = read_parquet(path)
-                tables.append(found.select(schema.names).cast(schema))
+                tables.append(in_columns(read_parquet(path), schema))
             except FileNotFoundError:
                 continue
             except (pa.ArrowException, OSError, KeyError, ValueError):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from railquake.errors import InputError
 from railquake.inputs.toml import read_toml
 from railquake.study.folder import STUDY_FILE, TABLE_FILE, ResultsFolder, no_note, read_parquet
-from railquake.study.table import distinct, table_schema, to_pandas
+from railquake.study.table import distinct, in_columns, table_schema, to_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,7 +50,8 @@ class StudyResults:
 
         Columns: ``row`` (from 0), ``record``, ``level``, ``scale`` (factor on the motion, all
         told), one for each axis (SI units), ``scenario_hash``, the keys of `assess` (``versions``
-        as JSON), and ``error`` (None unless the run failed).
+        as JSON; what was not measured yet when a row was made is missing), and ``error`` (None
+        unless the run failed).
         """
         schema = table_schema(self.design)
         file = self.folder / TABLE_FILE
@@ -59,7 +60,7 @@ class StudyResults:
         import pyarrow as pa
 
         try:
-            return to_pandas(read_parquet(file).select(schema.names).cast(schema))
+            return to_pandas(in_columns(read_parquet(file), schema))
         except (pa.ArrowException, OSError, KeyError, ValueError):
             raise InputError(
                 f"{file}: is damaged; run the study again with the same --out to make it anew"

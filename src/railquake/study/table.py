@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from railquake import measures
 from railquake.errors import InputError
 
 if TYPE_CHECKING:
@@ -14,28 +15,11 @@ if TYPE_CHECKING:
 
     from railquake.study.design import Design, Point
 
-__all__ = ["MEASURES", "TIMINGS", "distinct", "table_row", "table_schema", "to_pandas"]
+__all__ = ["distinct", "in_columns", "table_row", "table_schema", "to_pandas"]
 
-# What `assess` gives, but for numbers: all others are real numbers.
-_TEXTS = ("status", "derailment_mode", "contact", "versions")
-_FLAGS = ("derailed",)
-_WHOLE = ("uplifts", "steps")
-MEASURES = (
-    "status", "derailed", "derailment_mode", "pga_m_s2", "pgv_m_s", "arias_intensity_m_s", "pbd_m",
-    "pbv_m_s", "pba_m_s2", "hinge_rotation_peak_rad", "base_moment_peak_n_m",
-    "top_rotation_peak_rad", "relative_roll_peak_rad", "uplift_ratio", "lateral_shift_peak_m",
-    "wheel_load_static_n", "wheel_load_peak_n", "wheel_unloading_peak", "lateral_force_peak_n",
-    "lateral_force_filtered_peak_n", "derailment_coefficient_peak", "flange_clearance_peak_m",
-    "off_rail_time_s", "detached_time_s", "uplifts", "flange_contact_first_s", "uplift_first_s",
-    "uplift_last_end_s", "onset_first_s", "flange_over_first_s", "derailed_s", "overturned_s",
-    "energy_residual", "contact_energy_residual", "energy_dissipated_j", "steps", "steps_per_s",
-    "wall_s", "dt_s", "dt_error", "dt_critical_s", "contact", "versions",
-)  # fmt: skip
-"""Keys of `assess`, columns of the table."""
-TIMINGS = ("wall_s", "steps_per_s")
-"""Columns that differ from one execution to the next."""
 _DESIGN = ("row", "record", "level", "scale")
-_KINDS = {"number": "float64", "integer": "int64", "flag": "bool", "text": "string"}
+_KINDS = {"number": "float64", "integer": "int64", "flag": "bool", "text": "string"}  # of an axis
+_VALUES = {float: "float64", int: "int64", bool: "bool", str: "string"}  # of a measure
 
 
 def table_schema(design: Design) -> pa.Schema:
@@ -55,16 +39,15 @@ def table_schema(design: Design) -> pa.Schema:
 
     columns = {"row": "int64", "record": "string", "level": "string", "scale": "float64"}
     for axis in design.axes:
-        if axis.column in (*_DESIGN, *MEASURES, "scenario_hash", "error"):
+        if axis.column in (*_DESIGN, *measures.all_keys(), "scenario_hash", "error"):
             raise InputError(
                 f"{design.where}: axes.{axis.column}: the table has a column of this name "
                 "already; choose another name"
             )
         columns[axis.column] = _KINDS.get(axis.kind, "string")
     columns["scenario_hash"] = "string"
-    for name in MEASURES:
-        kind = "text" if name in _TEXTS else "flag" if name in _FLAGS else "number"
-        columns[name] = _KINDS["integer" if name in _WHOLE else kind]
+    for measure in measures.MEASURES:
+        columns[measure.key] = _VALUES[measure.value]
     columns["error"] = "string"
     schema = pa.schema([(name, _arrow(kind)) for name, kind in columns.items()])
     # what pandas makes of it: types that know missing values, so that they never change
@@ -86,7 +69,7 @@ def _pandas(name: str, kind: str) -> str:
 
 
 def table_row(
-    point: Point, scenario_hash: str | None, measures: Mapping[str, Any]
+    point: Point, scenario_hash: str | None, measured: Mapping[str, Any]
 ) -> dict[str, Any]:
     """One row of the table.
 
@@ -96,7 +79,7 @@ def table_row(
         Of the design.
     scenario_hash : str or None
         None where no scenario could be made.
-    measures : mapping
+    measured : mapping
         What `assess` gave, or the status ``failed`` and the error.
     """
     row = {
@@ -107,11 +90,38 @@ def table_row(
         **point.labels,
         "scenario_hash": scenario_hash,
         "error": None,
-        **measures,
+        **measured,
     }
     if isinstance(row.get("versions"), Mapping):
         row["versions"] = json.dumps(row["versions"], sort_keys=True)
     return row
+
+
+def in_columns(table: pa.Table, schema: pa.Schema) -> pa.Table:
+    """A table that was read, in the columns of its study.
+
+    A measure that was not taken yet when the rows were made is null, so that a folder outlives the
+    measures that come later.
+
+    Parameters
+    ----------
+    table : pyarrow.Table
+    schema : pyarrow.Schema
+        Of `table_schema`.
+
+    Raises
+    ------
+    KeyError
+        If another column is missing.
+    pyarrow.ArrowException
+        If values are of another type.
+    """
+    import pyarrow as pa
+
+    for name in measures.all_keys():
+        if name != "status" and name not in table.column_names:
+            table = table.append_column(name, pa.nulls(table.num_rows, schema.field(name).type))
+    return table.select(schema.names).cast(schema)
 
 
 def distinct(table: pa.Table, hashes: Mapping[int, str | None] | None = None) -> pa.Table:

@@ -9,12 +9,12 @@ import pytest
 
 import railquake as rq
 from railquake.errors import InputError
+from railquake.measures import all_keys
 from railquake.run import many
 from railquake.run.time_step import TimeStep
 from railquake.study import batches, engine, open_results
 from railquake.study.design import Design
 from railquake.study.plan import plan
-from railquake.study.table import MEASURES
 from study_files import BASE, MODELS, small, tables, untimed
 
 
@@ -54,9 +54,9 @@ def test_rows_are_those_of_the_lockstep_engine(finished):
 def test_columns_are_the_design_the_hash_the_keys_of_a_run_and_the_error(finished):
     table, _ = finished
     single = rq.assess(rq.simulate(open_results(finished[1]).scenario(0)))
-    assert set(MEASURES) == set(single)
+    assert set(all_keys()) == set(single)
     design = ["row", "record", "level", "scale", "model", "scenario_hash"]
-    assert list(table.columns) == [*design, *MEASURES, "error"]
+    assert list(table.columns) == [*design, *all_keys(), "error"]
 
 
 def test_any_executor_and_number_of_threads_gives_the_same_table(finished, tmp_path):

@@ -16,7 +16,8 @@ from railquake.findings.claim import BORNE_OUT, IN_PART, NOT_BORNE_OUT, Verdict,
 from railquake.findings.correlation import Difference
 from railquake.findings.evidence import Evidence
 from railquake.findings.models import COUPLED, PIERS
-from railquake.findings.words import NAMES, interval, listed, sentence
+from railquake.findings.words import interval, listed, sentence
+from railquake.measures import short_name
 
 BETTER, WORSE, OPEN = "better", "worse", "open"
 
@@ -37,7 +38,8 @@ def better_measure(evidence: Evidence) -> Verdict:
         within = evidence.within_level.get(name)
         for difference in over_all:
             inside = None if within is None else within.against(difference.other)
-            measures[_side(difference, inside)].append(f"{_measure(difference)} ({PIERS[name]})")
+            label = f"{short_name(difference.other)} ({PIERS[name]})"
+            measures[_side(difference, inside)].append(label)
         if over_all:
             words.append(f"{PIERS[name]}: ρ of PBV less that of {_numbers(over_all)}")
         if within is not None and within.differences:
@@ -66,9 +68,5 @@ def _side(over_all: Difference, within: Difference | None) -> str:
     return BETTER if any(s.above(0.0) for s in signs) else OPEN
 
 
-def _measure(difference: Difference) -> str:
-    return NAMES.get(difference.other, difference.other)
-
-
 def _numbers(differences: Iterable[Difference]) -> str:
-    return ", ".join(f"{_measure(d)} {interval(d.spearman)}" for d in differences)
+    return ", ".join(f"{short_name(d.other)} {interval(d.spearman)}" for d in differences)

@@ -1,0 +1,500 @@
+r"""Every measure of a run, declared once: key, unit, names, meaning, and where it is read.
+
+A row (`run.assess.assess`), the columns of a study's table, the axes of reports and pictures, what
+uplift and outcomes are held against, pelicun's names and the tables of docs/measures.md all follow
+from `MEASURES`.  A new measure of the march takes two files: a row of the state where it is
+accumulated, and its declaration here, with a `StateRow` as its place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass
+from enum import Enum
+
+__all__ = [
+    "MEASURES", "AttributeOf", "EventTime", "Intensity", "Kind", "Measure", "Place", "StateRow",
+    "StateTime", "WorkedOut", "all_keys", "correlated", "intensities", "named", "of_kind", "paired",
+    "printed", "short_name", "telling_of_the_step",
+]  # fmt: skip
+
+_STANDARD_GRAVITY = 9.80665  # m/s2
+_SUPERSCRIPTS = str.maketrans("23", "²³")
+
+
+class Kind(Enum):
+    """What a measure tells of; the value is the heading under which the documentation lists it."""
+
+    OUTCOME = "How it ended"
+    GROUND = "The ground"
+    STRUCTURE = "The structure"
+    TRAIN = "The train"
+    TIME = "When"
+    RUN = "How it was computed"
+
+
+# --- where a measure is read; `run.assess` knows how
+
+
+@dataclass(frozen=True)
+class StateRow:
+    """The last value of a row of the state, by the row's name."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class StateTime:
+    """A row of the state that holds a time, s; negative there, None here: it did not happen."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class EventTime:
+    """When an event first held, s, by the event's name; None: never."""
+
+    event: str
+
+
+@dataclass(frozen=True)
+class AttributeOf:
+    """An attribute of the response, its path with points, such as ``system.ground.pga``."""
+
+    path: str
+
+
+@dataclass(frozen=True)
+class WorkedOut:
+    """A function of `run.assess`, by its name, that makes it of the response."""
+
+    function: str
+
+
+Place = StateRow | StateTime | EventTime | AttributeOf | WorkedOut
+
+
+@dataclass(frozen=True)
+class Intensity:
+    """What makes a measure one that outcomes are held against.
+
+    Parameters
+    ----------
+    rank : int
+        Place where such measures are listed; the first is the paper's choice.
+    name : str
+        In ``probability(pbv=1.2)`` and ``from_table(table, "derailed", "pbv")``.
+    demand_type, demand_unit : str
+        pelicun's names; see `fragility.write_csv`.
+    has_period : bool
+        Whether it belongs to a period, which pelicun wants to know.
+    with_uplift : bool
+        Whether the report holds the uplift against it as well.
+    """
+
+    rank: int
+    name: str
+    demand_type: str
+    demand_unit: str
+    has_period: bool = False
+    with_uplift: bool = True
+
+
+@dataclass(frozen=True)
+class Measure:
+    r"""A measure of a run.
+
+    Parameters
+    ----------
+    key : str
+        In a row, and of the column; its unit stands at its end.
+    kind : Kind
+    unit : str
+        SI; ``1`` for a plain number, empty for a text or a flag.
+    short : str
+        Such as ``PBV``.
+    caption : str
+        Such as ``peak bridge velocity``; what follows a comma may be left out beside the number.
+    meaning : str
+        A line of the documentation, in Markdown with :math:`\TeX`.
+    place : Place
+        Where `assess` reads it.
+    value : type
+        ``float``, ``int``, ``bool`` or ``str``.  (``versions`` is a mapping, JSON in a table.)
+    optional : bool
+        Whether it is None, in a table missing, where it did not happen or does not apply.
+    factor : float
+        SI times this is in `shown_unit`.
+    shown_unit : str
+        In which people read it; empty: as `unit`.
+    intensity : Intensity, optional
+        Where outcomes are held against it.
+    step_floor : float, optional
+        Where the error of the time step is told by it: smaller values count as this large.
+    paired : bool
+        Whether models are compared by it, run by run.
+    repeats : bool
+        Whether the same run gives it again; times do not.
+    """
+
+    key: str
+    kind: Kind
+    unit: str
+    short: str
+    caption: str
+    _: KW_ONLY
+    meaning: str
+    place: Place
+    value: type[float] | type[int] | type[bool] | type[str] = float
+    optional: bool = False
+    factor: float = 1.0
+    shown_unit: str = ""
+    intensity: Intensity | None = None
+    step_floor: float | None = None
+    paired: bool = False
+    repeats: bool = True
+
+    @property
+    def axis(self) -> str:
+        """Label of an axis, in the unit in which people read it."""
+        unit = self.shown_unit or self.unit
+        return self.caption if unit in ("", "1") else f"{self.caption}, {printed(unit)}"
+
+    @property
+    def named_axis(self) -> str:
+        """The same behind its short name."""
+        return f"{self.short}: {self.axis}"
+
+    @property
+    def title(self) -> str:
+        """The caption as a heading."""
+        return f"{self.caption[0].upper()}{self.caption[1:]}"
+
+
+def printed(unit: str) -> str:
+    """A unit as it is printed, ``m/s²``."""
+    return unit.translate(_SUPERSCRIPTS)
+
+
+# --- the list ------------------------------------------------------------------------------------
+
+MEASURES: tuple[Measure, ...] = (
+    # --- how it ended
+    Measure(
+        "status", Kind.OUTCOME, "", "status", "status",
+        value=str,
+        meaning="`safe`; `onset`: the reference roll was reached, the train stayed; `derailed`; "
+        "`diverged`: a state left every plausible bound, the run was stopped; `not converged`: "
+        "the hinge's iteration failed in some step",
+        place=AttributeOf("status"),
+    ),
+    Measure(
+        "derailed", Kind.OUTCOME, "", "derailed", "whether the train derailed",
+        value=bool, meaning="`true` if the train left the track, by sliding off or by overturning",
+        place=WorkedOut("derailed"),
+    ),
+    Measure(
+        "derailment_mode", Kind.OUTCOME, "", "mode", "how the train derailed",
+        value=str, optional=True,
+        meaning="`slide-off left`, `slide-off right`, `overturned left`, `overturned right`",
+        place=AttributeOf("derailment_mode"),
+    ),
+    # --- the ground
+    Measure(
+        "pga_m_s2", Kind.GROUND, "m/s2", "PGA", "peak ground acceleration",
+        factor=1.0 / _STANDARD_GRAVITY, shown_unit="g", meaning="of the lateral motion, scaled",
+        place=AttributeOf("system.ground.pga"),
+        intensity=Intensity(5, "pga", "Peak Ground Acceleration", "mps2"),
+    ),
+    Measure(
+        "pgv_m_s", Kind.GROUND, "m/s", "PGV", "peak ground velocity",
+        meaning="trapezoid rule, least-squares line removed",
+        place=AttributeOf("system.ground.pgv"),
+        intensity=Intensity(4, "pgv", "Peak Ground Velocity", "mps"),
+    ),
+    Measure(
+        "arias_intensity_m_s", Kind.GROUND, "m/s", "Arias intensity", "Arias intensity",
+        meaning=r"$\frac{\pi}{2g}\int a^2 dt$", place=AttributeOf("system.ground.arias_intensity"),
+    ),
+    Measure(
+        "sa_t1_m_s2", Kind.GROUND, "m/s2", "Sa(T₁)", "spectral acceleration at T₁",
+        optional=True,
+        meaning="pseudo-spectral acceleration of the lateral motion, 5 % damping, at the "
+        "structure's first period `t1_s`; none without a pier",
+        place=WorkedOut("spectral_acceleration"),
+        intensity=Intensity(6, "sa_t1", "Peak Spectral Acceleration", "mps2", has_period=True),
+    ),
+    # --- the structure
+    Measure(
+        "pbd_m", Kind.STRUCTURE, "m", "PBD", "peak bridge displacement",
+        factor=1e3, shown_unit="mm",
+        meaning="of the pier's top relative to the ground; holds the static displacement under the "
+        "standing train",
+        place=StateRow("PEAK_U"), step_floor=0.0, paired=True,
+        intensity=Intensity(3, "pbd", "Peak Floor Displacement", "m", with_uplift=False),
+    ),
+    Measure(
+        "pbv_m_s", Kind.STRUCTURE, "m/s", "PBV", "peak bridge velocity",
+        meaning="of the pier's top relative to the ground", place=StateRow("PEAK_U_V"),
+        step_floor=0.0, paired=True, intensity=Intensity(1, "pbv", "Peak Floor Velocity", "mps"),
+    ),
+    Measure(
+        "pba_m_s2", Kind.STRUCTURE, "m/s2", "PBA", "peak bridge acceleration",
+        meaning="of the pier's top, absolute; at grade the ground's", place=StateRow("PEAK_U_A"),
+        paired=True, intensity=Intensity(2, "pba", "Peak Floor Acceleration", "mps2"),
+    ),
+    Measure(
+        "hinge_rotation_peak_rad", Kind.STRUCTURE, "rad", "hinge rotation", "peak hinge rotation",
+        factor=1e3, shown_unit="mrad", meaning=r"$\theta_1$", place=StateRow("PEAK_THETA1"),
+    ),
+    Measure(
+        "base_moment_peak_n_m", Kind.STRUCTURE, "N m", "base moment", "peak base moment",
+        factor=1e-6, shown_unit="MN m", meaning="of the hinge", place=StateRow("PEAK_MOMENT"),
+    ),
+    Measure(
+        "top_rotation_peak_rad", Kind.STRUCTURE, "rad", "top rotation", "peak rotation of the top",
+        factor=1e3, shown_unit="mrad", meaning=r"$\theta_2$", place=StateRow("PEAK_THETA2"),
+        paired=True,
+    ),
+    Measure(
+        "t1_s", Kind.STRUCTURE, "s", "T₁", "first period of the structure",
+        optional=True,
+        meaning="of the pier by itself, without the train, with its initial hinge stiffness (Eq. "
+        "10); none without a pier",
+        place=WorkedOut("period"),
+    ),
+    # --- the train, until it leaves the track
+    Measure(
+        "relative_roll_peak_rad", Kind.TRAIN, "rad", "relative roll", "peak relative roll",
+        factor=1e3, shown_unit="mrad", meaning="roll of the wheelset against the track",
+        place=StateRow("PEAK_ROLL"),
+    ),
+    Measure(
+        "uplift_ratio", Kind.TRAIN, "1", "uplift ratio", "normalised uplift",
+        meaning="the relative roll over the reference roll of the wheel-rail pair (0.836° for "
+        "`bart`); 1 is the onset of slide-off",
+        place=WorkedOut("uplift_ratio"), step_floor=0.05, paired=True,
+    ),
+    Measure(
+        "lateral_shift_peak_m", Kind.TRAIN, "m", "lateral shift", "peak lateral shift",
+        factor=1e3, shown_unit="mm", meaning="of the wheelset's centre, in the track's axes",
+        place=StateRow("PEAK_SHIFT"),
+    ),
+    Measure(
+        "wheel_load_static_n", Kind.TRAIN, "N", "static load", "static load of one side",
+        factor=1e-3, shown_unit="kN",
+        meaning="half the car's weight: what one side bears at rest on a level track",
+        place=AttributeOf("system.static_wheel_load"),
+    ),
+    Measure(
+        "wheel_load_peak_n", Kind.TRAIN, "N", "wheel load", "peak load of one side",
+        factor=1e-3, shown_unit="kN",
+        meaning="of all wheels of one side together, normal to the plane of the track, raw",
+        place=StateRow("PEAK_LOAD"),
+    ),
+    Measure(
+        "wheel_unloading_peak", Kind.TRAIN, "1", "unloading", "peak unloading of one side",
+        meaning="1 minus the lowest low-passed load of a side over the static one; 1: unloaded",
+        place=WorkedOut("wheel_unloading"),
+    ),
+    Measure(
+        "lateral_force_peak_n", Kind.TRAIN, "N", "raw lateral force", "peak lateral force, raw",
+        factor=1e-3, shown_unit="kN", meaning="of the train on the track, both sides together, raw",
+        place=StateRow("PEAK_LATERAL"),
+    ),
+    Measure(
+        "lateral_force_filtered_peak_n", Kind.TRAIN, "N", "lateral force",
+        "peak lateral force, impacts filtered",
+        factor=1e-3, shown_unit="kN",
+        meaning="the same through a second-order Butterworth low-pass "
+        "(`solver.lateral_force_filter`, 20 Hz) of the means over frames: short impacts out, the "
+        "paper's Figure 10",
+        place=StateRow("PEAK_LATERAL_FILTERED"), paired=True,
+    ),
+    Measure(
+        "derailment_coefficient_peak", Kind.TRAIN, "1", "Y/Q", "peak derailment coefficient",
+        meaning="low-passed Y/Q of a side, where the low-passed load is above a tenth of the "
+        "static one",
+        place=StateRow("PEAK_DERAILMENT_COEFFICIENT"),
+    ),
+    Measure(
+        "flange_clearance_peak_m", Kind.TRAIN, "m", "flange clearance", "highest flange clearance",
+        factor=1e3, shown_unit="mm",
+        meaning="highest place of a flange tip above its rail's crown, from the profiles; "
+        "negative: it stayed below. Once a frame",
+        place=StateRow("PEAK_CLEARANCE"),
+    ),
+    Measure(
+        "off_rail_time_s", Kind.TRAIN, "s", "off rail", "time off the rail",
+        meaning="total time with at least one side off its rail", place=StateRow("TIME_ONE_WHEEL"),
+    ),
+    Measure(
+        "detached_time_s", Kind.TRAIN, "s", "detached", "time off both rails",
+        meaning="total time with both sides off", place=StateRow("TIME_DETACHED"),
+    ),
+    Measure(
+        "uplifts", Kind.TRAIN, "1", "uplifts", "number of uplifts",
+        value=int, meaning="number of times that uplift began (seen at frames)",
+        place=StateRow("UPLIFTS"),
+    ),
+    # --- when
+    Measure(
+        "flange_contact_first_s", Kind.TIME, "s", "flange contact", "first flange contact",
+        optional=True, meaning="a flange zone touched its rail", place=EventTime("FLANGE_CONTACT"),
+    ),
+    Measure(
+        "uplift_first_s", Kind.TIME, "s", "uplift", "first uplift",
+        optional=True, meaning="uplift began", place=EventTime("UPLIFT"),
+    ),
+    Measure(
+        "uplift_last_end_s", Kind.TIME, "s", "uplift's end", "end of the last uplift",
+        optional=True, meaning="uplift ended, the last time",
+        place=StateTime("UPLIFT_END"),
+    ),
+    Measure(
+        "onset_first_s", Kind.TIME, "s", "onset", "first onset of slide-off",
+        optional=True, meaning="the relative roll was at the reference roll",
+        place=EventTime("ONSET"),
+    ),
+    Measure(
+        "flange_over_first_s", Kind.TIME, "s", "flange over", "first flange over its rail",
+        optional=True, meaning="a flange tip was above its rail's crown",
+        place=EventTime("FLANGE_OVER"),
+    ),
+    Measure(
+        "derailed_s", Kind.TIME, "s", "derailment", "derailment",
+        optional=True, meaning="`derailed`, see below", place=EventTime("DERAILED"),
+    ),
+    Measure(
+        "overturned_s", Kind.TIME, "s", "overturning", "overturning",
+        optional=True, meaning="`overturned`, see below", place=EventTime("OVERTURNED"),
+    ),
+    # --- how it was computed
+    Measure(
+        "energy_residual", Kind.RUN, "1", "energy residual", "energy residual",
+        meaning="of the whole balance, over what is dissipated; see [energy](theory/energy.md)",
+        place=AttributeOf("audit.whole_relative"),
+    ),
+    Measure(
+        "contact_energy_residual", Kind.RUN, "1", "contact’s residual",
+        "energy residual of the contact",
+        meaning="of the contact's balance, over what impact and creep lose; positive is loss, "
+        "negative gain",
+        place=AttributeOf("audit.contact_relative"),
+    ),
+    Measure(
+        "energy_dissipated_j", Kind.RUN, "J", "dissipated", "energy dissipated",
+        factor=1e-3, shown_unit="kJ", meaning="dashpots, Rayleigh damping, hinge, impact, creep",
+        place=AttributeOf("audit.dissipated"),
+    ),
+    Measure(
+        "steps", Kind.RUN, "1", "steps", "time steps marched",
+        value=int, meaning="time steps marched", place=AttributeOf("steps"),
+    ),
+    Measure(
+        "steps_per_s", Kind.RUN, "1/s", "steps/s", "speed of the march",
+        meaning="of the march alone", place=WorkedOut("speed"), repeats=False,
+    ),
+    Measure(
+        "wall_s", Kind.RUN, "s", "time taken", "time that the run took",
+        meaning="of the whole run, pictures and files apart", place=AttributeOf("wall_s"),
+        repeats=False,
+    ),
+    Measure(
+        "dt_s", Kind.RUN, "s", "Δt", "time step",
+        meaning="time step", place=AttributeOf("system.dt"),
+    ),
+    Measure(
+        "dt_error", Kind.RUN, "1", "step's error", "estimated error of the time step",
+        optional=True,
+        meaning="where the time step was chosen: its estimated error in PBD, PBV and uplift",
+        place=WorkedOut("time_step_error"),
+    ),
+    Measure(
+        "dt_critical_s", Kind.RUN, "s", "critical Δt", "critical time step",
+        meaning="longest stable step, see [Zhai](theory/zhai.md)",
+        place=AttributeOf("system.critical_dt"),
+    ),
+    Measure(
+        "substeps", Kind.RUN, "1", "substeps", "time steps in one of the structure",
+        value=int, meaning="of the wheelset, in one of the structure and of the sprung bodies",
+        place=AttributeOf("system.substeps"),
+    ),
+    Measure(
+        "contact", Kind.RUN, "", "contact", "method of contact",
+        value=str, meaning="`table` or `grid`", place=AttributeOf("system.scenario.solver.contact"),
+    ),
+    Measure(
+        "friction", Kind.RUN, "1", "μ", "friction of wheel on rail",
+        meaning="coefficient of friction, `wheelrail.friction`",
+        place=AttributeOf("system.scenario.wheelrail.friction"),
+    ),
+    Measure(
+        "hinge_law", Kind.RUN, "", "hinge", "law of the hinge",
+        value=str, optional=True, meaning="`bouc-wen` or `elastic`; none without a pier",
+        place=WorkedOut("hinge_law"),
+    ),
+    Measure(
+        "lateral_force_filter_hz", Kind.RUN, "Hz", "filter", "corner of the low-pass",
+        meaning="of forces, `solver.lateral_force_filter`",
+        place=AttributeOf("system.scenario.solver.lateral_force_filter"),
+    ),
+    Measure(
+        "versions", Kind.RUN, "", "versions", "versions",
+        value=str, meaning="of railquake, Python, NumPy, SciPy, Numba", place=WorkedOut("versions"),
+    ),
+)  # fmt: skip
+"""All measures, in the order of a table's columns."""
+
+
+# --- asking the list; always the list as it stands, so that nobody keeps a copy -------------------
+
+
+def all_keys() -> tuple[str, ...]:
+    """Keys of a row, columns of a table."""
+    return tuple(measure.key for measure in MEASURES)
+
+
+def named(key: str) -> Measure:
+    """The measure of a key.
+
+    Raises
+    ------
+    KeyError
+        If it is not declared.
+    """
+    for measure in MEASURES:
+        if measure.key == key:
+            return measure
+    raise KeyError(key)
+
+
+def short_name(key: str) -> str:
+    """Short name of a measure; of another column its key."""
+    return next((measure.short for measure in MEASURES if measure.key == key), key)
+
+
+def of_kind(kind: Kind) -> tuple[Measure, ...]:
+    """Measures of a kind."""
+    return tuple(measure for measure in MEASURES if measure.kind is kind)
+
+
+def intensities() -> dict[str, Measure]:
+    """Measures that outcomes are held against, by the names of `Intensity`, in its order."""
+    found = [(m.intensity, m) for m in MEASURES if m.intensity is not None]
+    return {of.name: measure for of, measure in sorted(found, key=lambda pair: pair[0].rank)}
+
+
+def correlated() -> tuple[str, ...]:
+    """Keys of the measures that uplift is held against; the first is the paper's choice."""
+    found = intensities().values()
+    return tuple(m.key for m in found if m.intensity is not None and m.intensity.with_uplift)
+
+
+def telling_of_the_step() -> tuple[Measure, ...]:
+    """Measures by which the error of a time step is told."""
+    return tuple(measure for measure in MEASURES if measure.step_floor is not None)
+
+
+def paired() -> tuple[str, ...]:
+    """Keys of the measures by which models are compared, run by run."""
+    return tuple(measure.key for measure in MEASURES if measure.paired)
