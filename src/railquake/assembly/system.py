@@ -280,9 +280,8 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
     start = start_state(blank, constants, geometry, at, track, stages, layout, vehicle)
 
     contact = stability.linear_contact(at.vehicle[-3:], at.drift, forces, track)
-    critical = stability.critical_time_step(
-        *stability.with_contact(contact, vehicle), solver.phi, solver.psi
-    )
+    held = stability.with_contact(contact, vehicle.stiffness, vehicle.damping)
+    critical = stability.critical_time_step(vehicle.mass, *held, solver.phi, solver.psi)
     if solver.step > critical:
         raise InputError(
             f"solver.dt: {solver.step:g} s is above the critical time step of {critical:.3g} s "
@@ -293,7 +292,7 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
         if isinstance(array, np.ndarray):
             array.setflags(write=False)
     # the contact forces are carried on over a step of the structure: they must be resolved by it
-    slow = min(critical, stability.slow_time_step(contact, vehicle, structure))
+    slow = min(critical, stability.slow_time_step(contact, vehicle.fastest_rate, structure))
     return _AtRest(
         vehicle, structure, layout, start, constants, geometry, choices, critical, slow, load
     )
