@@ -7,6 +7,8 @@ from railquake.march.slots import chosen, solving
 def stage(system, function, engine="alone"):
     """A stage, or several, as plain Python: what a run of the system calls.
 
+    Of a slot it is what stands there.
+
     Parameters
     ----------
     system : railquake.assembly.system.System
@@ -19,4 +21,4 @@ def stage(system, function, engine="alone"):
     linearised = together or system.scenario.solver.hinge_solve == "linearised"
     laws = chosen({**system.choices, "engine": engine})
     laws.update(solving(system.structure.hinge, linearised, abreast=together))
-    return bind(function, PYTHON, laws, system.layout).call
+    return bind(laws.get(function, function), PYTHON, laws, system.layout).call
