@@ -13,10 +13,11 @@ from pathlib import Path
 import numpy as np
 
 import railquake as rq
-from railquake.assembly.system import GRAVITY
 from railquake.inputs.ground_motion import GroundMotion
-from railquake.physics import constant, march, state
-from railquake.physics.vehicle import kernel_order
+from railquake.march.order import kernel_order
+from railquake.march.step import find_contact_forces
+from railquake.physics.vehicle import GRAVITY
+from stages import stage
 
 FILE = Path(__file__).with_name("verification") / "jolts.json"
 DT = 1e-5
@@ -70,21 +71,26 @@ def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
     """The system with the push, and with the forces and accelerations that belong to it."""
     system = rq.assemble(jolt(name, dt, sign, frame, **pier))
     s, q, matrices = system.start.copy(), system.constants, system.vehicle
-    x, v, a = (state.VEHICLE + k * 9 + np.argsort(kernel_order(9)) for k in range(3))
+    state, constant = system.layout.state, system.layout.constant
+    place = np.argsort(kernel_order(9))
+    x, v, a = state.VEHICLE_X + place, state.VEHICLE_V + place, state.VEHICLE_A + place
     s[x, 0] += sign * push(name)[9:18]
     s[v, 0] += sign * push(name)[18:]
-    march.find_contact_forces(s, q, system.geometry)
-    s[state.TRACK_OLD : state.TRACK_OLD + 3] = s[state.TRACK_FY : state.TRACK_FY + 3]
-    s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3] = s[state.WHEELSET_Y : state.WHEELSET_Y + 3]
-    powers = slice(state.IMPACT_POWER, state.IMPACT_POWER + 3)
-    s[state.IMPACT_POWER_OLD : state.IMPACT_POWER_OLD + 3] = s[powers]
+    stage(system, find_contact_forces)(s, q, system.geometry)
+    for old, new in (
+        (state.TRACK_FORCE_OLD, state.TRACK_FORCE),
+        (state.WHEELSET_FORCE_OLD, state.WHEELSET_FORCE),
+        (state.CONTACT_POWER_OLD, state.CONTACT_POWER),
+    ):
+        s[old : old + 3] = s[new : new + 3]
     s[state.DASHPOT_POWER] = s[v, 0] @ matrices.damping @ s[v, 0]
     force = np.where(np.arange(9) % 3 == 1, matrices.mass * GRAVITY, 0.0)
     force -= matrices.stiffness @ s[x, 0] + matrices.damping @ s[v, 0]
-    force[-3:] += s[state.WHEELSET_Y : state.WHEELSET_Y + 3, 0]
-    s[a, 0] = s[a + 9, 0] = force / matrices.mass
+    pushed = s[state.WHEELSET_FORCE : state.WHEELSET_FORCE + 3, 0]
+    force[-3:] += pushed
+    s[a, 0] = s[state.VEHICLE_A_OLD + place, 0] = force / matrices.mass
     # the wheelset's, but for its contact forces
-    free = s[a[-3:], 0] - s[state.WHEELSET_Y : state.WHEELSET_Y + 3, 0] / matrices.mass[-3:]
+    free = s[a[-3:], 0] - pushed / matrices.mass[-3:]
     s[state.WHEELSET_FREE : state.WHEELSET_FREE + 3, 0] = free
     s[state.WHEELSET_FREE_KNOWN : state.WHEELSET_FREE_KNOWN + 3, 0] = free
     k = q[constant.K : constant.K + 6, 0]
@@ -92,7 +98,7 @@ def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
     node = q[constant.REACTION, 0] * np.array([s[state.NODE_U, 0], 0.0, s[state.NODE_THETA2, 0]])
     node[1] = -s[state.MOMENT, 0]
     pier = node - column @ s[state.U : state.U + 3, 0]
-    s[state.U_A : state.U_A + 3, 0] = pier / q[constant.M_U : constant.M_U + 3, 0]
+    s[state.U_A : state.U_A + 3, 0] = pier / q[constant.MASS : constant.MASS + 3, 0]
     return replace(system, start=s)
 
 

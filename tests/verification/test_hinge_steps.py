@@ -4,7 +4,7 @@ import pytest
 
 from railquake.inputs.solver import Solver
 from railquake.inputs.support import Pier
-from railquake.physics.kernel import PYTHON
+from railquake.march.compiler import PYTHON
 from railquake.validation.hinge_steps import SETS, deviation, hinge_of, numbers
 
 

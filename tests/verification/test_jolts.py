@@ -5,7 +5,7 @@ import pytest
 
 import railquake as rq
 from jolts import EVERY, FINE, FRAME, JOLTS, STORED, pushed
-from railquake.physics.kernel import PYTHON
+from railquake.march.compiler import PYTHON
 
 DT = 2e-5
 

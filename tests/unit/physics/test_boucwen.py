@@ -8,14 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from railquake.assembly.statics import UNKNOWN_DEGRADATION
-from railquake.assembly.system import hinge_parameters
 from railquake.inputs.hinge import BoucWenHinge
 from railquake.inputs.model import validated
 from railquake.inputs.presets import resolved_section
 from railquake.inputs.support import Pier
-from railquake.physics import boucwen
-from railquake.physics.kernel import SCALAR, bind
+from railquake.march.compiler import SCALAR, bind
+from railquake.physics.hinge import bouc_wen
 from railquake.probe import run_hinge
 
 # Parameters from the first lines of each file.
@@ -23,6 +21,11 @@ GENERIC = BoucWenHinge(
     m=1.0, Fy=1.0, xu=10.0, alpha=0.05, k0=1.0, n=1.5, eta0=0.0, beta0=1.0, rho_eps=0.1,
     rho_x=0.2, phi=0.5, delta_k=0.4, delta_f=0.1, sigma=1.0, u=2.0, eps_p=1.0, rho_p=0.3,
 )  # fmt: skip
+
+
+def state(z, eps, x_max, z_step=0.0):
+    """A state of which nothing is known of degradation and pinching."""
+    return bouc_wen.LAW.virgin._replace(z=z, eps=eps, x_max=x_max, z_step=z_step)
 
 
 def berkeley(**changes):
@@ -47,18 +50,20 @@ def test_moment_follows_opensees_at_every_step(shared, name, hinge):
 
 
 def test_compiled_law_gives_what_the_plain_one_gives():
-    parameters = hinge_parameters(berkeley(), 1e-10, 50)
-    compiled = bind(boucwen.advance, SCALAR).call
-    state = (1e-3, 3e-4, 2e-4, 2e-4, 1.5e-3)
+    parameters = bouc_wen.parameters(berkeley(), 1e-10, 50)
+    compiled = bind(bouc_wen.advance, SCALAR).call
+    begun = state(3e-4, 2e-4, 1.5e-3, z_step=-1e-4)
     for step in (1e-5, -1e-5, 1e-3):
-        arguments = (*state, *UNKNOWN_DEGRADATION, step, 0.0, *parameters)
-        assert compiled(*arguments) == pytest.approx(boucwen.advance(*arguments), rel=1e-12)
+        arguments = (1e-3, begun, parameters, step, 0.0)
+        found, expected = compiled(*arguments), bouc_wen.advance(*arguments)
+        assert found[:-1] == pytest.approx(expected[:-1], rel=1e-12)
+        assert found.state == pytest.approx(expected.state, rel=1e-12)
 
 
 def moment_and_tangent(hinge, x, z, eps, x_max, step):
-    parameters = hinge_parameters(hinge, 1e-14, 300)
-    found = boucwen.advance(x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, step, 0.0, *parameters)
-    return found[4], found[5]
+    parameters = bouc_wen.parameters(hinge, 1e-14, 300)
+    found = bouc_wen.advance(x, state(z, eps, x_max), parameters, step, 0.0)
+    return found.moment, found.tangent
 
 
 @settings(max_examples=200, deadline=None)
@@ -127,24 +132,21 @@ def test_elastic_hinge_is_k0_times_the_rotation():
 
 def test_within_a_structure_the_step_satisfies_both_structure_and_hinge():
     hinge = berkeley()
-    parameters = hinge_parameters(hinge, 1e-12, 50)
+    parameters = bouc_wen.parameters(hinge, 1e-12, 50)
     flexibility, free = 2e-11, 3e-4
-    state = (1e-3, 3e-4, 3e-4, 1e-4, 1.2e-3)
-    (
-        dx,
-        *_,
-    ) = boucwen.advance(*state, *UNKNOWN_DEGRADATION, free, flexibility, *parameters)
-    alone = boucwen.advance(*state, *UNKNOWN_DEGRADATION, dx, 0.0, *parameters)
-    assert dx == pytest.approx(free - flexibility * alone[4], rel=1e-9)
+    begun = state(3e-4, 1e-4, 1.2e-3)
+    dx = bouc_wen.advance(1e-3, begun, parameters, free, flexibility).step
+    alone = bouc_wen.advance(1e-3, begun, parameters, dx, 0.0)
+    assert dx == pytest.approx(free - flexibility * alone.moment, rel=1e-9)
 
 
 def test_the_linearised_step_errs_less_than_a_thousandth_at_small_steps():
-    parameters = hinge_parameters(berkeley(), 1e-12, 50)
-    state = (1e-3, 3e-4, 3e-4, 1e-4, 1.2e-3)
+    parameters = bouc_wen.parameters(berkeley(), 1e-12, 50)
+    begun = state(3e-4, 1e-4, 1.2e-3)
     flexibility = 2e-11
-    moment = boucwen.advance(*state, *UNKNOWN_DEGRADATION, 0.0, 0.0, *parameters)[4]
+    moment = bouc_wen.advance(1e-3, begun, parameters, 0.0, 0.0).moment
     free = flexibility * moment + 1e-6  # the rest of the structure is nearly in balance
-    exact = boucwen.advance(*state, *UNKNOWN_DEGRADATION, free, flexibility, *parameters)
-    once = boucwen.advance_linearised(*state, *UNKNOWN_DEGRADATION, free, flexibility, *parameters)
-    assert abs(exact[0]) < 2e-6
-    assert once[1] - state[1] == pytest.approx(exact[1] - state[1], rel=1e-3)
+    exact = bouc_wen.advance(1e-3, begun, parameters, free, flexibility)
+    once = bouc_wen.advance_linearised(1e-3, begun, parameters, free, flexibility)
+    assert abs(exact.step) < 2e-6
+    assert once.state.z - begun.z == pytest.approx(exact.state.z - begun.z, rel=1e-3)

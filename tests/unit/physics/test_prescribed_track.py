@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 import railquake as rq
-from railquake.physics import constant, march, pier, state
-from railquake.physics.kernel import PYTHON
+from railquake.march import ground, structure, track
+from railquake.march.compiler import PYTHON
+from railquake.march.rows import constant, size, state
+from railquake.march.slots import chosen
 
 
 def polynomials(t):
@@ -36,27 +38,28 @@ def drive():
 
 @pytest.mark.parametrize("substeps", [1, 2])
 def test_position_velocity_and_work_at_every_step(substeps):
-    s = np.zeros((state.VEHICLE + 45, 1))
-    q = np.zeros((constant.VEHICLE, 1))
+    stages = chosen({"structure": "prescribed"})
+    s = np.zeros((size.STATE_ROWS, 1))
+    q = np.zeros((size.CONSTANT_ROWS, 1))
     q[constant.FRAME_STEPS], q[constant.DT], q[constant.SUBSTEPS] = STEPS, DT, substeps
     q[constant.RATE] = 1.0 / (substeps * DT)
     force = np.array([3.0, -5.0, 7.0])
-    s[state.TRACK_OLD : state.TRACK_OLD + 3, 0] = 0.5 * force
+    s[state.TRACK_FORCE_OLD : state.TRACK_FORCE_OLD + 3, 0] = 0.5 * force
     s[state.TRACK_FY : state.TRACK_FY + 3, 0] = 1.5 * force
     before = polynomials(0.0)
     for frame in range(3):
-        march.begin_frame_on_track(s, q, drive(), frame, 0)
+        stages[ground.begin_frame](s, q, drive(), frame, 0)
         for n in range(0, STEPS, substeps):
-            march.move_ground(s, 0)
-            pier.place_prescribed_track(s, q, 0)
+            ground.move_ground(s, 0)
+            stages[track.place_track](s, q, 0)
             t = DT * (frame * STEPS + n)
             assert s[state.TRACK_Y : state.TRACK_Y + 3, 0] == pytest.approx(before, abs=1e-12)
             assert s[state.TRACK_VY : state.TRACK_VY + 3, 0] == pytest.approx(slopes(t), abs=1e-9)
-            pier.hold_structure(s, q, 0)
+            stages[structure.move_structure](s, q, 0)
             s[state.WORK_TRACK] = 0.0
-            pier.lead_prescribed_track(s, q, 0)
+            stages[track.lead_track](s, q, 0)
             for _ in range(substeps):
-                pier.move_track(s, q, 0)
+                track.move_track(s, q, 0)
             t = DT * (frame * STEPS + n + substeps)
             now = polynomials(t)
             # on the way at constant acceleration: the cubic's third part is 900 h^3/2

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from jolts import pushed
-from railquake.assembly.statics import UNKNOWN_DEGRADATION
-from railquake.assembly.system import hinge_parameters
-from railquake.physics import boucwen, constant, march, pier, state, vehicle
+from railquake.march import contact, ground, sprung, structure, track, wheelset
+from railquake.march.order import kernel_order
+from railquake.march.rows import constant, state
+from railquake.physics.hinge import bouc_wen
+from stages import stage
 
 DT = 2e-5
 
@@ -22,15 +24,17 @@ def test_structure_keeps_its_energy_to_the_last_digits(system):
     drawn = np.random.default_rng(2)
     k = q[constant.K : constant.K + 6, 0]
     c = q[constant.C : constant.C + 6, 0]
-    mass = q[constant.M_U : constant.M_U + 3, 0]
+    mass = q[constant.MASS : constant.MASS + 3, 0]
     stiffness, damping = (
         np.array([[m[0], m[1], m[2]], [m[1], m[3], m[4]], [m[2], m[4], m[5]]]) for m in (k, c)
     )
+    move_ground = stage(system, ground.move_ground)
+    move_structure = stage(system, structure.move_structure)
     s[state.U_V : state.U_V + 3, 0] = drawn.normal(size=3) * (0.3, 0.2, 0.1)
     s[state.GROUND], s[state.GROUND_SLOPE] = 5.0, 0.7
     x, v = s[state.U : state.U + 3, 0].copy(), s[state.U_V : state.U_V + 3, 0].copy()
     node = np.array([s[state.NODE_U, 0], 0.0, s[state.NODE_THETA2, 0]])
-    load = node - np.array([q[constant.PIER_LOAD, 0] * 5.0, s[state.MOMENT, 0], 0.0])
+    load = node - np.array([q[constant.GROUND_LOAD, 0] * 5.0, s[state.MOMENT, 0], 0.0])
     s[state.U_A : state.U_A + 3, 0] = (load - stiffness @ x - damping @ v) / mass
 
     def energy():
@@ -39,8 +43,8 @@ def test_structure_keeps_its_energy_to_the_last_digits(system):
 
     begun, before, work = energy(), x, 0.0
     for _ in range(40):
-        march.move_ground(s, 0)
-        pier.move_structure(s, q, 0)
+        move_ground(s, 0)
+        move_structure(s, q, 0)
         x = s[state.U : state.U + 3, 0].copy()
         work += node @ (x - before)
         before = x
@@ -51,7 +55,7 @@ def test_structure_keeps_its_energy_to_the_last_digits(system):
     # and it is in balance at the end
     end = s[state.U_V : state.U_V + 3, 0], s[state.U_A : state.U_A + 3, 0]
     left = mass * end[1] + damping @ end[0] + stiffness @ x - node
-    left += (q[constant.PIER_LOAD, 0] * s[state.GROUND, 0], s[state.MOMENT, 0], 0.0)
+    left += (q[constant.GROUND_LOAD, 0] * s[state.GROUND, 0], s[state.MOMENT, 0], 0.0)
     assert np.abs(left).max() < 1e-6 * np.abs(stiffness @ x).max()
     assert s[state.UNCONVERGED, 0] == 0.0
 
@@ -59,7 +63,7 @@ def test_structure_keeps_its_energy_to_the_last_digits(system):
 def test_ground_and_gravity_work_on_the_steps_of_the_bodies(system):
     s, q = np.zeros_like(system.start), system.constants
     steps = np.random.default_rng(4).normal(size=9)
-    s[state.VEHICLE + 36 : state.VEHICLE + 45, 0] = steps
+    s[state.VEHICLE_STEP : state.VEHICLE_STEP + 9, 0] = steps
     s[[state.GROUND, state.GROUND_SLOPE, state.GROUND_Z, state.GROUND_Z_SLOPE], 0] = (
         3.0,
         0.4,
@@ -68,9 +72,9 @@ def test_ground_and_gravity_work_on_the_steps_of_the_bodies(system):
     )
     s[state.DASHPOT_POWER] = 9.0
     # the wheelset has come by its steps from where it set off
-    vehicle.note_place(s, 0)
-    s[state.VEHICLE + np.array([4, 8]), 0] += steps[[4, 8]]
-    vehicle.carry(s, q, 0)
+    stage(system, wheelset.keep_place)(s, 0)
+    s[state.VEHICLE_X + np.array([4, 8]), 0] += steps[[4, 8]]
+    stage(system, sprung.work_on_bodies)(s, q, 0)
     mass = system.vehicle.mass[0::3]
     lateral, down = mass @ steps[0:6:2], mass @ steps[6:]
     # the ground's mean over the step that has just passed
@@ -84,35 +88,39 @@ def test_accelerations_are_those_of_the_equations_of_motion(system):
     """Eq. 1, row by row, against its matrices; and the dashpots' power."""
     s, q, matrices = system.start.copy(), system.constants, system.vehicle
     drawn = np.random.default_rng(6).normal(size=18)
-    order = vehicle.kernel_order(9)
-    s[state.VEHICLE : state.VEHICLE + 18, 0] = drawn
+    order = kernel_order(9)
+    s[state.VEHICLE_X : state.VEHICLE_X + 9, 0] = drawn[:9]
+    s[state.VEHICLE_V : state.VEHICLE_V + 9, 0] = drawn[9:]
     s[state.GROUND], s[state.GROUND_Z] = 1.5, -0.5
     s[state.DASHPOT_POWER] = 0.0
     s[[state.WHEELSET_Y, state.WHEELSET_Z, state.WHEELSET_PHI], 0] = 1e4, -2e4, 3e3
     x, v = np.empty(9), np.empty(9)
     x[order], v[order] = drawn[:9], drawn[9:]
+    lateral = stage(system, sprung.accelerate_lateral)
+    vertical = stage(system, sprung.accelerate_vertical)
     for i in range(6):
-        vehicle.accelerate_lateral(s, q, i, 0)
+        lateral(s, q, i, 0)
     for i in range(6, 9):
-        vehicle.accelerate_vertical(s, q, i, 0)
+        vertical(s, q, i, 0)
     s[state.DASHPOT_POWER_OLD] = 3.0
-    vehicle.damp(s, q, 0)
-    s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3, 0] = 5e3, 4e3, -1e3
+    stage(system, sprung.lose_to_dashpots)(s, q, 0)
+    s[state.WHEELSET_FORCE_OLD : state.WHEELSET_FORCE_OLD + 3, 0] = 5e3, 4e3, -1e3
     wheelset_steps = np.array([1e-3, -2e-3, 3e-3])
-    s[state.VEHICLE + 36 + np.array([4, 8, 5]), 0] = wheelset_steps
-    vehicle.note_suspension(s, q, 0)
-    vehicle.push_wheelset(s, q, 0)
+    s[state.VEHICLE_STEP + np.array([4, 8, 5]), 0] = wheelset_steps
+    stage(system, wheelset.keep_suspension)(s, q, 0)
+    stage(system, wheelset.push_wheelset)(s, q, 0)
     expected = -(matrices.stiffness @ x + matrices.damping @ v)
     expected[-3:] += 1e4, -2e4, 3e3
     expected /= matrices.mass
     expected[0::3] -= 1.5
     expected[1::3] += 9.80665 + 0.5
-    assert s[state.VEHICLE + 18 : state.VEHICLE + 27, 0] == pytest.approx(expected[order])
+    assert s[state.VEHICLE_A : state.VEHICLE_A + 9, 0] == pytest.approx(expected[order])
     power = v @ matrices.damping @ v
     assert s[state.LOST_DASHPOTS, 0] == pytest.approx(0.5 * DT * (3.0 + power))
     mean = 0.5 * np.array([5e3 + 1e4, 4e3 - 2e4, -1e3 + 3e3])
     assert s[state.WORK_VEHICLE, 0] == pytest.approx(mean @ wheelset_steps)
-    assert s[state.WHEELSET_OLD : state.WHEELSET_OLD + 3, 0].tolist() == [1e4, -2e4, 3e3]
+    kept = s[state.WHEELSET_FORCE_OLD : state.WHEELSET_FORCE_OLD + 3, 0]
+    assert kept.tolist() == [1e4, -2e4, 3e3]
 
 
 @pytest.mark.parametrize("substeps", [1, 5])
@@ -122,15 +130,17 @@ def test_reaction_is_the_contact_force_one_time_step_before(system, substeps):
     s, q = system.start.copy(), system.constants
     s[[state.ARM_Y, state.ARM_Z], 0] = 0.02, -0.4
     rows = slice(state.TRACK_FY, state.TRACK_FY + 3)
+    load_track = stage(system, track.load_track)
     found = []
     for share in (1.0, 1.5):
         on_wheelset = share * np.array([1e4, -2e4, 3e3])
         s[[state.WHEELSET_Y, state.WHEELSET_Z, state.WHEELSET_PHI], 0] = on_wheelset
-        march.react(s, q, 0)
+        load_track(s, q, 0)
         found.append(s[rows, 0].copy())
     contact = -np.array([1e4, -2e4, 3e3 + 0.02 * -2e4 + 0.4 * 1e4])
     assert found[1] == pytest.approx((1.5 + 0.5 * (substeps - 1) / substeps) * contact)
-    assert s[state.TRACK_OLD : state.TRACK_OLD + 3, 0].tolist() == found[0].tolist()
+    kept = s[state.TRACK_FORCE_OLD : state.TRACK_FORCE_OLD + 3, 0]
+    assert kept.tolist() == found[0].tolist()
 
 
 @pytest.mark.parametrize("substeps", [1, 5])
@@ -141,16 +151,18 @@ def test_track_gets_to_where_the_structure_has_moved(system, substeps):
     s[state.U_V : state.U_V + 3, 0] = 0.3, 0.2, 0.4
     s[state.WORK_TRACK] = 0.0
     old, new = np.array([1.0, 2.0, 3.0]), np.array([40.0, 50.0, 60.0])
-    pier.place_track(s, q, 0)
-    pier.orient_track(s, 0)
+    stage(system, track.place_track)(s, q, 0)
+    stage(system, track.orient_track)(s, 0)
     begun = s[state.TRACK_Y : state.TRACK_Y + 3, 0].copy()
-    pier.move_structure(s, q, 0)
-    s[state.TRACK_OLD : state.TRACK_OLD + 3, 0] = old
+    stage(system, structure.move_structure)(s, q, 0)
+    s[state.TRACK_FORCE_OLD : state.TRACK_FORCE_OLD + 3, 0] = old
     s[state.TRACK_FY : state.TRACK_FY + 3, 0] = new
-    pier.lead_track(s, q, 0)
+    stage(system, track.lead_track)(s, q, 0)
+    move_track = stage(system, track.move_track)
     for _ in range(substeps):
-        pier.move_track(s, q, 0)
-    wanted = np.array(pier.track_motion(s, q, 0))
+        move_track(s, q, 0)
+    on_node = stage(system, track.track_on_node)
+    wanted = np.array([*on_node(s, q, state.STRUCTURE_X, 0), *on_node(s, q, state.STRUCTURE_V, 0)])
     assert s[state.TRACK_Y : state.TRACK_Y + 6, 0] == pytest.approx(wanted, rel=1e-10, abs=1e-16)
     assert s[state.WORK_TRACK, 0] == pytest.approx(0.5 * (old + new) @ (wanted[:3] - begun))
     roll = s[state.TRACK_PHI, 0]
@@ -162,14 +174,17 @@ def test_suspension_is_carried_on_between_its_evaluations(system):
     """Linearly, by what it has changed since the one before; evaluated, it is what it is."""
     system = system.with_substeps(5)
     s, q = system.start.copy(), system.constants
-    rows = state.VEHICLE + 18 + np.array([4, 8, 5])  # y, z, phi
+    rows = state.VEHICLE_A + np.array([4, 8, 5])  # y, z, phi
     free = slice(state.WHEELSET_FREE, state.WHEELSET_FREE + 3)
+    keep, carry_on = (
+        stage(system, one) for one in (wheelset.keep_suspension, wheelset.carry_suspension_on)
+    )
     for value in (1.0, 3.0):
         s[rows, 0] = value * np.array([1.0, -2.0, 4.0])
-        vehicle.note_suspension(s, q, 0)
+        keep(s, q, 0)
         assert s[free, 0] == pytest.approx(s[rows, 0])
     for n in range(1, 5):
-        vehicle.carry_suspension_on(s, 0)
+        carry_on(s, 0)
         assert s[free, 0] == pytest.approx((3.0 + 0.4 * n) * np.array([1.0, -2.0, 4.0]))
 
 
@@ -184,7 +199,8 @@ def test_wheels_of_a_section_act_together(system):
     sides = [state.LOAD_LEFT, state.LOAD_RIGHT, state.LATERAL_LEFT, state.LATERAL_RIGHT]
     s[sides, 0] = 10.0, 20.0, 5.0, -7.0
     s[state.FORCE_PSI] = 9.0
-    march.add_up(s, q, 0)
+    add_wheels = stage(system, contact.add_wheels)
+    add_wheels(s, q, 0)
     assert s[powers, 0].tolist() == [1.0 * axles, 2.0 * axles, 3.0 * axles, 4.0 * axles]
     assert s[sides, 0].tolist() == [10.0 * axles, 20.0 * axles, 5.0 * axles, -7.0 * axles]
     forces = s[state.FORCE_Y : state.FORCE_PSI + 1, 0]
@@ -194,7 +210,7 @@ def test_wheels_of_a_section_act_together(system):
         axles * np.array([0.8 * 2.0 + 0.6 * 30.0, 0.6 * 2.0 - 0.8 * 30.0, 9.0])
     )
     s[state.ON_TRACK] = 0.0
-    march.add_up(s, q, 0)
+    add_wheels(s, q, 0)
     assert not s[[*powers, *sides, state.WHEELSET_Y, state.WHEELSET_Z, state.WHEELSET_PHI]].any()
 
 
@@ -202,17 +218,18 @@ def test_what_the_patches_add_up_begins_at_nothing(system):
     s = system.start.copy()
     sums = np.r_[state.FORCE_PSI : state.SPIN_POWER + 1, state.LOAD_LEFT : state.LATERAL_RIGHT + 1]
     s[sums] = 7.0
-    march.clear_forces(s, 0)
+    stage(system, contact.clear_forces)(s, 0)
     assert not s[sums].any()
 
 
 def test_one_iteration_is_one_newton_correction(system):
     """z - f/f', f' by differences; so is the linearised law, whatever is left."""
     h = system.scenario.support.bouc_wen
-    parameters = (*hinge_parameters(h, 1e-12, 1)[:-2], 0.0, 1.0)
+    parameters = bouc_wen.parameters(h, 1e-12, 1)._replace(tolerance=0.0, max_iterations=1.0)
     x, z, eps, x_max = 2e-4, 1.2e-4, 1e-4, 3e-4
     free, flexibility = 2e-4, 2e-11
-    kp = boucwen.pinched_stiffness(x, eps, *parameters[:1], h.rho_p, 1 / h.sigma, h.u, 1 / h.eps_p)
+    pinching = {"rho_p": h.rho_p, "per_sigma": 1 / h.sigma, "u": h.u, "per_eps_p": 1 / h.eps_p}
+    kp = bouc_wen.pinched_stiffness(x, eps, parameters._replace(**pinching))
 
     def rest(guess):
         dx = free - flexibility * (h.alpha * kp * x + (1 - h.alpha) * kp * guess)
@@ -228,16 +245,18 @@ def test_one_iteration_is_one_newton_correction(system):
     step = 1e-9
     slope = (rest(z + step) - rest(z - step)) / (2.0 * step)
     expected = z - rest(z) / slope
-    for law in (boucwen.advance, boucwen.advance_linearised):
-        found = law(x, z, z, eps, x_max, *UNKNOWN_DEGRADATION, free, flexibility, *parameters)
-        assert found[1] - z == pytest.approx(expected - z, rel=1e-5)
+    begun = bouc_wen.LAW.virgin._replace(z=z, eps=eps, x_max=x_max)
+    for law in (bouc_wen.advance, bouc_wen.advance_linearised):
+        found = law(x, begun, parameters, free, flexibility)
+        assert found.state.z - z == pytest.approx(expected - z, rel=1e-5)
 
 
 @pytest.mark.parametrize(("iterations", "missed"), [(1.0, 3.0), (50.0, 0.0)])
 def test_steps_whose_hinge_does_not_converge_are_counted(system, iterations, missed):
     s, q = system.start.copy(), system.constants.copy()
-    q[constant.TOLERANCE], q[constant.MAX_ITERATIONS] = 1e-13, iterations
+    q[constant.HINGE_TOLERANCE], q[constant.HINGE_MAX_ITERATIONS] = 1e-13, iterations
     s[state.GROUND] = 900.0
+    move_structure = stage(system, structure.move_structure)
     for _ in range(3):
-        pier.move_structure(s, q, 0)
+        move_structure(s, q, 0)
     assert s[state.UNCONVERGED, 0] == missed

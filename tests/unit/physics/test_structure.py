@@ -8,15 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from railquake.assembly import vehicle_matrices
-from railquake.assembly.statics import critical_time_step
+from railquake.assembly.stability import critical_time_step
 from railquake.inputs.vehicle import Vehicle
+from railquake.march.order import kernel_order, lateral_block
+from railquake.march.packed import packed
 from railquake.physics import newmark, pier, zhai
-from railquake.physics.vehicle import (
-    fixed_wheelset_modes,
-    kernel_order,
-    lateral_block,
-    packed,
-)
+from railquake.physics.vehicle import fixed_wheelset_modes
 
 E, SECOND, L, M, J = 44.8e9, 0.9 * 0.1825, 6.0, 262914.0, 2075226.0  # bart-berkeley
 K0 = 3.8432e10

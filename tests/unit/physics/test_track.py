@@ -6,16 +6,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from railquake.inputs.support import Pier
-from railquake.physics import constant, march, pier, state
-from railquake.physics.vehicle import DOF_COUNT
+from railquake.march import contact, track, wheelset
+from railquake.march.rows import constant, size, state
+from railquake.march.slots import chosen
+from railquake.physics import pier
 
 E, H = 2.3, 1.8  # of bart-berkeley
-WHEELSET = state.VEHICLE + np.array([2 * (DOF_COUNT // 3) - 2, DOF_COUNT - 1])  # y, z
+WHEELSET = np.array([size.WHEELSET_Y, size.WHEELSET_Z, size.WHEELSET_PHI])
+place_track = chosen({"structure": "node"})[track.place_track]
 numbers = st.floats(-1.0, 1.0, allow_subnormal=False)
 
 
 def constants():
-    q = np.zeros((constant.VEHICLE, 1))
+    q = np.zeros((size.CONSTANT_ROWS, 1))
     q[[constant.MAP_U, constant.MAP_PHI, constant.REACTION]] = 1.0
     q[constant.MAP_H], q[constant.MAP_E] = H, E
     q[[constant.DT, constant.RATE, constant.AXLES]] = 1.0
@@ -25,28 +28,27 @@ def constants():
 
 def moving(values):
     """Pier and wheelset somewhere, moving somehow, with a contact force in track axes."""
-    s, q = np.zeros((state.VEHICLE + 5 * DOF_COUNT, 1)), constants()
+    s, q = np.zeros((size.STATE_ROWS, 1)), constants()
     s[state.ON_TRACK] = 1.0
     s[state.U, 0], s[state.THETA2, 0] = 0.05 * values[0], 0.05 * values[1]
     s[state.U_V, 0], s[state.THETA2_V, 0] = values[2], values[3]
-    y, z = WHEELSET
-    for k, row in enumerate((y, z, y + 1)):
-        s[row, 0] = 0.1 * values[4 + k]
-        s[row + DOF_COUNT, 0] = values[7 + k]
-    pier.place_track(s, q, 0)
-    pier.orient_track(s, 0)
-    march.place_wheelset(s, q, 0)
+    for k, degree in enumerate(WHEELSET):
+        s[state.VEHICLE_X + degree, 0] = 0.1 * values[4 + k]
+        s[state.VEHICLE_V + degree, 0] = values[7 + k]
+    place_track(s, q, 0)
+    track.orient_track(s, 0)
+    wheelset.place_wheelset(s, q, 0)
     s[[state.LATERAL_LEFT, state.LOAD_RIGHT, state.FORCE_PSI], 0] = values[10:13]
-    march.add_up(s, q, 0)
-    march.react(s, q, 0)
+    contact.add_wheels(s, q, 0)
+    track.load_track(s, q, 0)
     return s[:, 0]
 
 
 def test_track_hangs_on_the_top_by_a_rigid_arm():
     """physics.md, section 1: phi = -theta_2, right side down."""
-    s, q = np.zeros((state.VEHICLE, 1)), constants()
+    s, q = np.zeros((size.STATE_ROWS, 1)), constants()
     s[state.U, 0], s[state.THETA2, 0] = 0.01, -0.002
-    pier.place_track(s, q, 0)
+    place_track(s, q, 0)
     assert s[state.TRACK_PHI, 0] == 0.002
     assert s[state.TRACK_Y, 0] == pytest.approx(0.01 + H * 0.002)  # above the node: to the right
     assert s[state.TRACK_Z, 0] == pytest.approx(E * 0.002)  # right of the node: down
@@ -69,11 +71,11 @@ def test_contact_does_the_same_work_on_the_node_as_on_the_track(values):
 def test_contact_works_on_nothing_but_the_motion_of_wheel_relative_to_rail(values):
     """physics.md, section 5: leaving out the track's turning made the contact create energy."""
     s = moving(values)
-    y, z = WHEELSET + DOF_COUNT
+    y, z, phi = state.VEHICLE_V + WHEELSET
     on_both = (
         s[state.WHEELSET_Y] * s[y]
         + s[state.WHEELSET_Z] * s[z]
-        + s[state.WHEELSET_PHI] * s[y + 1]
+        + s[state.WHEELSET_PHI] * s[phi]
         + s[state.TRACK_FY] * s[state.TRACK_VY]
         + s[state.TRACK_FZ] * s[state.TRACK_VZ]
         + s[state.TRACK_MX] * s[state.TRACK_VPHI]
