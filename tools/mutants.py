@@ -28,6 +28,7 @@ import signal
 import sys
 import tempfile
 import time
+import traceback
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -148,7 +149,7 @@ class Campaign:
         uncompiled()
         self.bound = functions_by_code()
         items = {item.nodeid: item for item in session.items}
-        found = in_fork(lambda: profile(list(items.values()), self.options.seconds))
+        found = in_fork(lambda: profile(list(items.values()), self.options.seconds), is_heard=True)
         if not isinstance(found, dict):
             raise SystemExit(f"the tests could not be profiled: {found}")
         times, calls, dropped = found["times"], found["calls"], found["dropped"]
@@ -233,8 +234,11 @@ def functions_by_code() -> dict[int, list[FunctionType]]:
     return found
 
 
-def in_fork(work: Any) -> Any:
-    """What ``work`` returns, in a process of its own; ``"crashed"`` or ``"timeout"`` otherwise."""
+def in_fork(work: Any, is_heard: bool = False) -> Any:
+    """What ``work`` returns, in a process of its own; ``"crashed"`` or ``"timeout"`` otherwise.
+
+    Its errors are seen where it ``is_heard``.
+    """
     sys.stdout.flush()
     reading, writing = os.pipe()
     child = os.fork()
@@ -242,6 +246,7 @@ def in_fork(work: Any) -> Any:
         os.close(reading)
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         silent = os.open(os.devnull, os.O_WRONLY)
+        errors = os.fdopen(os.dup(2), "w")
         os.dup2(silent, 1)
         os.dup2(silent, 2)
         status = 1
@@ -249,6 +254,10 @@ def in_fork(work: Any) -> Any:
             with os.fdopen(writing, "w") as pipe:
                 json.dump(work(), pipe)
             status = 0
+        except BaseException:
+            if is_heard:
+                traceback.print_exc(file=errors)
+                errors.flush()
         finally:
             os._exit(status)
     os.close(writing)
