@@ -89,6 +89,7 @@ def is_placeholder(function: FunctionType) -> bool:
 
 def mutants_of(module: str) -> Iterator[Mutant]:
     """All mutants of a module by mutmut's operators; those that do not compile are left out."""
+    import libcst
     from mutmut.mutation.file_mutation import create_mutations, deep_replace
 
     path = source_files()[module]
@@ -97,7 +98,9 @@ def mutants_of(module: str) -> Iterator[Mutant]:
     names = vars(import_module(f"railquake.{module}"))
     for mutation in mutations:
         function = mutation.contained_by_top_level_function
-        original = None if function is None else names.get(function.name.value)
+        if not isinstance(function, libcst.FunctionDef):
+            continue
+        original = names.get(function.name.value)
         if not isinstance(original, FunctionType) or is_placeholder(original):
             continue
         changed = deep_replace(function, mutation.original_node, mutation.mutated_node)
