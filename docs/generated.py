@@ -42,12 +42,18 @@ def supports():
                 yield f"[support.{key}]", table, TABLES_OF_SUPPORTS.get(key, "")
 
 
+def parts_of_vehicles():
+    """The sections of what a vehicle has several of, each by its name."""
+    for key in marked(vehicle.Vehicle, ByName):
+        field = vehicle.Vehicle.model_fields[key]
+        for part in models_in(field.annotation):
+            yield f"[vehicle.{key}.NAME]", part, f"{field.description}, one table for each."
+
+
 # Where each model stands in a case file, and what the page says of it.
 SECTIONS = (
     ("[vehicle]", vehicle.Vehicle, "`preset` is a built-in name or a file; keys beside it win."),
-    ("[vehicle.bodies.NAME]", vehicle.Body, "One table for each rigid body."),
-    ("[vehicle.springs.NAME]", vehicle.Spring, "Between points of two bodies."),
-    ("[vehicle.dashpots.NAME]", vehicle.Dashpot, "Between points of two bodies."),
+    *parts_of_vehicles(),
     *supports(),
     (
         "[wheelrail]",
