@@ -2,8 +2,8 @@ r"""Every measure of a run, declared once: key, unit, names, meaning, and where 
 
 A row (`run.assess.assess`), the columns of a study's table, the axes of reports and pictures, what
 uplift and outcomes are held against, pelicun's names and the tables of docs/measures.md all follow
-from `MEASURES`.  A new measure of the march takes two files: a row of the state where it is
-accumulated, and its declaration here, with a `StateRow` as its place.
+from `MEASURES`.  A new measure of the march takes two files: its declaration here, which makes its
+`StateRow`, too, and `march.peaks`, where that is accumulated.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class StateRow:
-    """The last value of a row of the state, by the row's name."""
+    """Last value of a row of the state, by its name; the measure's own, if none is called so."""
 
     name: str
 

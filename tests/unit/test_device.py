@@ -13,7 +13,8 @@ import pytest
 import railquake as rq
 from railquake.bench import gpu as bench_gpu
 from railquake.cli.commands import app
-from railquake.physics import kernel
+from railquake.march import compiler
+from railquake.march.compiler import cuda
 from railquake.run.many import simulate_many
 
 TIMINGS = ("wall_s", "steps_per_s")
@@ -80,9 +81,9 @@ def test_the_kernel_compiles_for_a_gpu_that_is_not_there():
     lanes = np.zeros(1, dtype=np.int64)
     arguments = (
         system.start.T.copy(), system.constants.T.copy(), system.geometry, system.drive,
-        lanes, lanes, lanes, 10,
+        lanes, lanes, 10,
     )  # fmt: skip
-    code = kernel.ptx(system.kernel(kernel.CUDA), arguments, (9, 0))
+    code = compiler.ptx(system.kernel(compiler.CUDA), arguments, (9, 0))
     assert ".target sm_90" in code
     assert code.count(".visible .entry") == 1
     assert code.count("fma.rn.f64") > 300
@@ -98,7 +99,7 @@ def test_without_numba_cuda_the_extra_is_named(monkeypatch):
 
 @pytest.fixture
 def no_gpu(monkeypatch):
-    monkeypatch.setattr(kernel, "_import_cuda", lambda: SimpleNamespace(is_available=lambda: False))
+    monkeypatch.setattr(cuda, "_import_cuda", lambda: SimpleNamespace(is_available=lambda: False))
 
 
 def test_without_a_gpu_one_line_says_so(no_gpu):

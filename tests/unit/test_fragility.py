@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.special import ndtr
 
 import railquake as rq
-from railquake import fragility
-from railquake.fragility import Fragility, compare_measures, outcome, write_csv
+from railquake.fragility import OUTCOMES, Fragility, compare_measures, outcome, write_csv
+from railquake.fragility.fits import Fits, quantile
 
 TRIALS = 500
 COVERAGE = (0.92, 0.98)  # 95 +- 3 %
@@ -29,7 +29,7 @@ def covered(x, y, truth, quantile, labels=None):
 
     All sets at once, by what `Fragility.fit` calls for one.
     """
-    fits = fragility._Fits.of(x, y, np.ones(x.shape)).penalised()
+    fits = Fits.of(x, y, np.ones(x.shape)).penalised()
     low, high, _ = fits.intervals(quantile, labels)
     assert np.isfinite(low).all() and np.isfinite(high).all()
     return ((low <= truth) & (truth <= high)).mean(axis=0)
@@ -44,7 +44,7 @@ def test_intervals_of_95_percent_cover_known_parameters_in_95_percent_of_500_tri
 ):
     rng = np.random.default_rng([runs, round(100 * theta), round(100 * beta)])
     x, y = simulated(rng, (TRIALS, runs), theta, beta)
-    share = covered(x, y, np.array([theta, beta]), fragility._quantile(0.95, 0))
+    share = covered(x, y, np.array([theta, beta]), quantile(0.95, 0))
     assert np.all(share >= COVERAGE[0]) and np.all(share <= COVERAGE[1]), share
 
 
@@ -62,16 +62,16 @@ def test_intervals_cover_where_runs_of_a_record_depend_on_each_other():
     x, y = x.reshape(TRIALS, -1), y.reshape(TRIALS, -1)
     labels = np.repeat(np.arange(records), runs)
     truth = np.array([1.0, math.hypot(beta, shift)])
-    share = covered(x, y, truth, fragility._quantile(0.95, records), labels)
+    share = covered(x, y, truth, quantile(0.95, records), labels)
     assert np.all(share >= COVERAGE[0]) and np.all(share <= COVERAGE[1]), share
     # while intervals for independent runs would not
-    assert covered(x, y, truth, fragility._quantile(0.95, 0))[0] < 0.90
+    assert covered(x, y, truth, quantile(0.95, 0))[0] < 0.90
 
 
 def test_one_fit_gives_the_interval_of_the_trials():
     x, y = simulated(np.random.default_rng(4), 200, 1.0, 0.4)
-    fits = fragility._Fits.of(x, y, np.ones((1, 200))).penalised()
-    low, high, _ = fits.intervals(fragility._quantile(0.95, 0))
+    fits = Fits.of(x, y, np.ones((1, 200))).penalised()
+    low, high, _ = fits.intervals(quantile(0.95, 0))
     found = Fragility.fit(x, y, replicates=0)
     assert found.theta_interval == pytest.approx((low[0, 0], high[0, 0]))
     assert found.beta_interval == pytest.approx((low[0, 1], high[0, 1]))
@@ -101,7 +101,7 @@ def test_interval_ends_where_the_profile_has_fallen_by_half_a_squared_quantile()
     from scipy.optimize import minimize_scalar
 
     x, y = simulated(np.random.default_rng(6), 160, 1.0, 0.4)
-    fits = fragility._Fits.of(x, y, np.ones((1, 160))).penalised()
+    fits = Fits.of(x, y, np.ones((1, 160))).penalised()
     z, scale, centre = fits.z[0], fits.scale[0], fits.centre[0]
 
     def penalised(a, b):
@@ -288,7 +288,7 @@ def test_unknown_measure_is_refused():
 
 
 def test_csv_has_the_layout_of_pelicun_s_damage_parameters(tmp_path):
-    curves = [Fragility.from_table(table(), e, "pbv", replicates=0) for e in fragility.OUTCOMES]
+    curves = [Fragility.from_table(table(), e, "pbv", replicates=0) for e in OUTCOMES]
     write_csv(tmp_path / "two.csv", {"train-elastic": curves})
     with open(tmp_path / "two.csv", newline="") as file:
         (row,) = csv.DictReader(file)

@@ -11,7 +11,8 @@ import pytest
 
 import railquake as rq
 from railquake.assembly.system import System
-from railquake.physics.kernel import lockstep_target, vector_doubles, vector_instructions
+from railquake.march.compiler import lockstep_target, vector_doubles, vector_instructions
+from railquake.march.compiler.bind import _bind_cached
 from railquake.run import many
 
 SHORT = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
@@ -172,10 +173,8 @@ def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
     """The speed rests on it, and a stray branch in a stage silently loses it."""
     doubles = vector_doubles()
     assert doubles > 1
-    from railquake.physics import kernel
-
     monkeypatch.setenv("RAILQUAKE_CACHE_DIR", str(tmp_path))  # compile here and now
-    kernel._bind_cached.cache_clear()
+    _bind_cached.cache_clear()
     system: System = rq.assemble(rq.scenario(synthetic=SHORT))
     try:
         target = lockstep_target()
@@ -184,11 +183,11 @@ def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
         made(
             np.repeat(system.start, target.lanes, axis=1),
             np.repeat(system.constants, target.lanes, axis=1),
-            system.geometry, system.drive, lanes, lanes, lanes, 0, target.lanes, 10,
+            system.geometry, system.drive, (lanes, lanes), 0, target.lanes, 10,
         )  # fmt: skip
         code = next(iter(made.inspect_asm().values()))
     finally:
-        kernel._bind_cached.cache_clear()
+        _bind_cached.cache_clear()
     # two vectors of two doubles do what one of four does
     assert vector_instructions(code, doubles) > 1500
     if doubles == 4:
@@ -211,7 +210,7 @@ def test_compiled_code_uses_wide_vectors(tmp_path, monkeypatch):
 )
 def test_lanes_are_as_many_as_the_compilers_own_vectors_hold(processor, doubles):
     program = (
-        "from railquake.physics.kernel import lockstep_target, vector_doubles;"
+        "from railquake.march.compiler import lockstep_target, vector_doubles;"
         "print(vector_doubles(), lockstep_target().lanes)"
     )
     named = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""}

@@ -13,8 +13,9 @@ from railquake.errors import InputError
 from railquake.inputs.hinge import BoucWenHinge
 from railquake.inputs.vehicle import Vehicle
 from railquake.inputs.wheelrail import WheelRail
-from railquake.physics.boucwen import pinched_stiffness
-from railquake.physics.contact import effective_modulus, hertz_coefficients
+from railquake.physics.hertz import effective_modulus, hertz_coefficients
+from railquake.physics.hinge import HINGE_LAWS
+from railquake.physics.hinge.bouc_wen import pinched_stiffness
 from railquake.probe import creep_force, mode_labels, run_hinge, standing_wheelset
 
 CONTACT_STEEL = {"youngs_modulus": 209.92e9, "poisson_ratio": 0.28}
@@ -66,9 +67,7 @@ def test_standing_still_evaluates_the_pinching_anew():
     for k in range(100):
         kp = moment[k] / (hinge.alpha * path[k] + (1 - hinge.alpha) * z[k]) if k else hinge.k0
         eps += (1.0 - hinge.alpha) * kp * z[k] * step[k] / hinge.m
-    kp = pinched_stiffness(
-        5e-3, eps, hinge.k0, hinge.rho_p, 1.0 / hinge.sigma, hinge.u, 1.0 / hinge.eps_p
-    )
+    kp = pinched_stiffness(5e-3, eps, HINGE_LAWS["bouc-wen"].parameters(hinge, 1e-13, 200))
     expected = kp * (hinge.alpha * 5e-3 + (1.0 - hinge.alpha) * z[-1])
     assert moment[-1] == pytest.approx(expected, rel=1e-9)
 

@@ -51,9 +51,9 @@ def constants_of(
     q[constant.AXLES] = scenario.vehicle.axles
     q[constant.VEHICLE_MASS] = scenario.vehicle.mass
     q[constant.STATIC_WHEEL_LOAD] = static_wheel_load(vehicle)
-    _fill(q, constant.FILTER_BY, low_pass_coefficients(
+    q[layout.constant_blocks["FILTER_BY"]] = low_pass_coefficients(
         solver.lateral_force_filter, solver.step * frame_steps(solver)
-    ))  # fmt: skip
+    )
     _fill_vehicle(q, vehicle, layout)
     _fill_wheelrail(q, scenario.wheelrail, scenario.vehicle.speed, layout)
     fill_structure(q, structure, layout)
@@ -66,24 +66,19 @@ def static_wheel_load(vehicle: VehicleMatrices) -> float:
     return 0.5 * float(vehicle.mass[1::3].sum()) * GRAVITY
 
 
-def _fill(q: Array, first: int, values: tuple[float, ...] | Array) -> None:
-    """A block from its first row on."""
-    q[first : first + len(values)] = values
-
-
 def _fill_vehicle(q: Array, vehicle: VehicleMatrices, layout: Layout) -> None:
-    constant = layout.constant
+    constant, blocks = layout.constant, layout.constant_blocks
     order = kernel_order(len(vehicle.mass))
     upper = upper_triangle(len(order))
     q[constant.GRAVITY] = GRAVITY
-    _fill(q, constant.BODY_MASS, vehicle.mass[0::3])
-    _fill(q, constant.INVERSE_MASS, 1.0 / vehicle.mass[order])
-    _fill(q, constant.STIFFNESS, vehicle.stiffness[np.ix_(order, order)][upper])
-    _fill(q, constant.DAMPING, vehicle.damping[np.ix_(order, order)][upper])
+    q[blocks["BODY_MASS"]] = vehicle.mass[0::3]
+    q[blocks["INVERSE_MASS"]] = 1.0 / vehicle.mass[order]
+    q[blocks["STIFFNESS"]] = vehicle.stiffness[np.ix_(order, order)][upper]
+    q[blocks["DAMPING"]] = vehicle.damping[np.ix_(order, order)][upper]
 
 
 def _fill_wheelrail(q: Array, wheelrail: WheelRail, speed: float, layout: Layout) -> None:
-    constant = layout.constant
+    constant, blocks = layout.constant, layout.constant_blocks
     alpha_r = RESTITUTION_LAWS[wheelrail.restitution_law].coefficient(wheelrail.restitution)
     if not math.isfinite(alpha_r):
         raise InputError(
@@ -96,8 +91,8 @@ def _fill_wheelrail(q: Array, wheelrail: WheelRail, speed: float, layout: Layout
     q[constant.ONSET_BOUND] = wheelrail.onset_rate_bound
     q[constant.FRICTION] = wheelrail.friction
     q[constant.INVERSE_SPEED] = 1.0 / max(speed, wheelrail.speed_bound)
-    _fill(q, constant.SHIFT_AXIS, axis_cells(SHIFT_AXIS))
-    _fill(q, constant.ROLL_AXIS, axis_cells(ROLL_AXIS))
+    q[blocks["SHIFT_AXIS"]] = axis_cells(SHIFT_AXIS)
+    q[blocks["ROLL_AXIS"]] = axis_cells(ROLL_AXIS)
     tip_y, tip_z = flange_tip(wheelrail.wheel_profile())
     rail = wheelrail.rail_profile()
     crown = rail.y[int(np.argmin(rail.z))]
@@ -111,28 +106,27 @@ def _fill_wheelrail(q: Array, wheelrail: WheelRail, speed: float, layout: Layout
 
 def fill_structure(q: Array, structure: Structure, layout: Layout) -> None:
     """What of the structure does not depend on the time step."""
-    constant = layout.constant
+    constant, blocks = layout.constant, layout.constant_blocks
     upper = upper_triangle(structure.degrees[0])
-    _fill(q, constant.GROUND_LOAD, structure.ground_load)
-    _fill(q, constant.MASS, structure.mass)
-    _fill(q, constant.K, structure.stiffness[upper])
-    _fill(q, constant.C, structure.damping[upper])
-    _fill(q, constant.OFFSET, structure.offset)
+    q[blocks["GROUND_LOAD"]] = structure.ground_load
+    q[blocks["MASS"]] = structure.mass
+    q[blocks["K"]] = structure.stiffness[upper]
+    q[blocks["C"]] = structure.damping[upper]
+    q[blocks["OFFSET"]] = structure.offset
     q[constant.REACTION] = structure.reaction
-    _fill(q, constant.HINGE, structure.parameters)
+    q[blocks["HINGE"]] = structure.parameters
 
 
 def fill_substeps(q: Array, substeps: int, layout: Layout) -> None:
     """Time steps in one of structure and sprung bodies, and what of the structure depends on it."""
-    constant, size = layout.constant, layout.size
+    constant, blocks, size = layout.constant, layout.constant_blocks, layout.size
     step = substeps * float(q[constant.DT])
-    entries = size.STRUCTURE_ENTRIES
     effective = newmark.effective_matrix(
-        np.diag(q[constant.MASS : constant.MASS + size.STRUCTURE]),
-        unpacked(q[constant.C : constant.C + entries]),
-        unpacked(q[constant.K : constant.K + entries]),
+        np.diag(q[blocks["MASS"]]),
+        unpacked(q[blocks["C"]]),
+        unpacked(q[blocks["K"]]),
         step,
     )
     q[constant.SUBSTEPS] = substeps
     q[constant.RATE] = 1.0 / step
-    _fill(q, constant.FLEX, np.linalg.inv(effective)[upper_triangle(size.STRUCTURE)])
+    q[blocks["FLEX"]] = np.linalg.inv(effective)[upper_triangle(size.STRUCTURE)]

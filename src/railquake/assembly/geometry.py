@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from railquake.errors import InputError
+from railquake.files import whole_file
 from railquake.march.compiler import SCALAR, bind, cache_folder, source_hash
 from railquake.memory import Bounded
 from railquake.physics.contact_table import FIELDS, Axis, axis_nodes, fill_table
@@ -167,10 +167,8 @@ def _table(digest: str, geometry: Geometry) -> Array:
     bind(fill_table, SCALAR).call(shifts, rolls, geometry, table)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_name(f"{path.name}.{os.getpid()}.part")
-        with open(part, "wb") as file:
+        with whole_file(path) as part, part.open("wb") as file:
             np.save(file, table)
-        os.replace(part, path)
     except OSError:
         pass  # a cache that cannot be written costs a second in each process, nothing more
     return table

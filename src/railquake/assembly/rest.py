@@ -14,16 +14,13 @@ from railquake.physics.hinge import HINGE_LAWS, HingeLaw
 from railquake.physics.vehicle import GRAVITY
 
 if TYPE_CHECKING:
+    from railquake.assembly.stability import ContactForces
     from railquake.assembly.supports import Structure
     from railquake.assembly.vehicle import VehicleMatrices
 
-__all__ = ["ContactForces", "Equilibrium", "LoadedHinge", "Rest", "find_rest", "loaded_hinge"]
+__all__ = ["Equilibrium", "LoadedHinge", "Rest", "find_rest", "loaded_hinge"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
-
-# (displacement, velocity of the wheelset; track y, z, phi) -> forces on the wheelset and on the
-# structure, both in ground axes
-ContactForces = Callable[[Array, Array, Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
@@ -88,7 +85,7 @@ class Equilibrium:
     vehicle : VehicleMatrices
     structure : Structure
     forces : callable
-        See `ContactForces`.
+        See `stability.ContactForces`.
     settlement : float
         Vertical displacement of the wheelset at which the treads bear about their load, m.
     carried : callable

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from railquake.assembly.rest import ContactForces
     from railquake.assembly.supports import Structure
-    from railquake.assembly.vehicle import VehicleMatrices
 
 __all__ = [
     "LONGEST_SLOW",
+    "ContactForces",
     "critical_time_step",
     "fastest_rate",
     "linear_contact",
@@ -21,6 +21,10 @@ __all__ = [
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+
+# (displacement, velocity of the wheelset; track y, z, phi) -> forces on the wheelset and on the
+# structure, both in ground axes
+ContactForces = Callable[[Array, Array, Array], tuple[Array, Array]]
 
 STEP_GROWTH = 1.3  # between two time steps that are looked at for stability
 LONGEST_SLOW = 1e-4  # s; no step of structure and sprung bodies is longer, but for ``dt`` itself
@@ -108,23 +112,23 @@ def linear_contact(
 
 
 def with_contact(
-    contact: tuple[Array, Array], matrices: VehicleMatrices
-) -> tuple[Array, Array, Array]:
-    """Mass, stiffness and damping of the vehicle on a linear contact."""
-    stiffness, damping = matrices.stiffness.copy(), matrices.damping.copy()
+    contact: tuple[Array, Array], stiffness: Array, damping: Array
+) -> tuple[Array, Array]:
+    """Stiffness and damping of the vehicle on a linear contact."""
+    stiffness, damping = stiffness.copy(), damping.copy()
     stiffness[-3:, -3:] += contact[0]
     damping[-3:, -3:] += contact[1]
-    return matrices.mass, stiffness, damping
+    return stiffness, damping
 
 
 def slow_time_step(
-    contact: tuple[Array, Array], matrices: VehicleMatrices, structure: Structure
+    contact: tuple[Array, Array], vehicle_rate: float, structure: Structure
 ) -> float:
     """Longest step of what is slow: the vehicle off its rails, the track's node on the contact.
 
-    The structure itself is marched implicitly.
+    ``vehicle_rate`` is the vehicle's fastest, 1/s.  The structure itself is marched implicitly.
     """
-    rate = max(matrices.fastest_rate, SLOW / LONGEST_SLOW)
+    rate = max(vehicle_rate, SLOW / LONGEST_SLOW)
     if structure.reaction > 0.0:
         _, top, _, top_roll = structure.degrees
         node = [top, top_roll]

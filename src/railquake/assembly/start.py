@@ -11,14 +11,13 @@ import numpy as np
 from railquake.assembly.constants import static_wheel_load
 from railquake.march.compiler import PYTHON, bind
 from railquake.march.order import kernel_order
-from railquake.march.rows_state import FILTERED, PATCHES
 from railquake.march.slots import chosen
 from railquake.march.step import find_contact_forces
-from railquake.physics.derailment import EVENTS
 from railquake.physics.profiles import Geometry, zone_contact
 
 if TYPE_CHECKING:
-    from railquake.assembly.rest import ContactForces, Rest
+    from railquake.assembly.rest import Rest
+    from railquake.assembly.stability import ContactForces
     from railquake.assembly.vehicle import VehicleMatrices
     from railquake.inputs.scenario import Scenario
     from railquake.march.rows import Layout
@@ -48,20 +47,19 @@ def blank_state(vehicle: VehicleMatrices, layout: Layout) -> Array:
     state = layout.state
     S = np.zeros((layout.size.STATE_ROWS, 1))
     S[state.ON_TRACK] = 1.0
-    S[state.NEAR : state.NEAR + 2] = 1.0
-    S[state.CELL_HELD : state.CELL_HELD + 2] = -1.0  # no cell has been fetched yet
+    S[layout.state_blocks["NEAR"]] = 1.0
+    S[layout.state_blocks["CELL_HELD"]] = -1.0  # no cell has been fetched yet
     S[state.LOWEST_LOAD] = static_wheel_load(vehicle)
     S[state.PEAK_CLEARANCE] = -1.0
-    S[state.FIRST_TIME : state.FIRST_TIME + len(EVENTS)] = -1.0
+    S[layout.state_blocks["FIRST_TIME"]] = -1.0
     S[state.UPLIFT_END] = -1.0
     return S
 
 
 def _close_patches(S: Array, Q: Array, layout: Layout) -> None:
     """A standing contact: closed, with the hysteresis of the slowest onset."""
-    first = layout.state.PATCH_HYSTERESIS
     slowest = Q[layout.constant.ALPHA_R, 0] / Q[layout.constant.ONSET_BOUND, 0]
-    S[first : first + len(PATCHES), 0] = slowest
+    S[layout.state_blocks["PATCH_HYSTERESIS"], 0] = slowest
 
 
 def contact_forces(
@@ -71,7 +69,7 @@ def contact_forces(
 
     ``stages`` runs the contact stages of the march on a scratch state ``S``.
     """
-    state, size = layout.state, layout.size
+    state, size, blocks = layout.state, layout.size, layout.state_blocks
     place = [size.WHEELSET_Y, size.WHEELSET_Z, size.WHEELSET_PHI]
     position = state.VEHICLE_X + np.array(place)
     velocity = state.VEHICLE_V + np.array(place)
@@ -80,13 +78,11 @@ def contact_forces(
     def acting(place: tuple[float, ...]) -> tuple[Array, Array]:
         S[position, 0] = place[:3]
         S[velocity, 0] = place[3:6]
-        S[state.TRACK : state.TRACK + 3, 0] = place[6:]
-        S[state.TRACK_V : state.TRACK_V + 3, 0] = 0.0
+        S[blocks["TRACK"], 0] = place[6:]
+        S[blocks["TRACK_V"], 0] = 0.0
         _close_patches(S, Q, layout)
         stages(S, Q, geometry)
-        wheelset = S[state.WHEELSET_FORCE : state.WHEELSET_FORCE + 3, 0].copy()
-        node = S[state.NODE : state.NODE + size.STRUCTURE, 0].copy()
-        return wheelset, node
+        return S[blocks["WHEELSET_FORCE"], 0].copy(), S[blocks["NODE"], 0].copy()
 
     return lambda position, velocity, track: acting((*position, *velocity, *track))
 
@@ -134,28 +130,23 @@ def start_state(
     layout : Layout
     vehicle : VehicleMatrices
     """
-    state, size = layout.state, layout.size
+    state, blocks = layout.state, layout.state_blocks
     S = blank.copy()
-    S[state.STRUCTURE_X : state.STRUCTURE_X + size.STRUCTURE, 0] = at.structure
-    S[state.HINGE : state.HINGE + len(at.hinge.state), 0] = at.hinge.state
+    S[blocks["STRUCTURE_X"], 0] = at.structure
+    S[blocks["HINGE"], 0] = at.hinge.state
     S[state.MOMENT] = at.hinge.moment
-    order = kernel_order(size.DOFS)
-    S[state.VEHICLE_X : state.VEHICLE_X + size.DOFS, 0] = at.vehicle[order]
-    S[state.VEHICLE_V : state.VEHICLE_V + size.DOFS, 0] = np.where(order % 3 == 0, at.drift, 0.0)
-    S[state.TRACK : state.TRACK + 3, 0] = track
+    order = kernel_order(layout.size.DOFS)
+    S[blocks["VEHICLE_X"], 0] = at.vehicle[order]
+    S[blocks["VEHICLE_V"], 0] = np.where(order % 3 == 0, at.drift, 0.0)
+    S[blocks["TRACK"], 0] = track
     _close_patches(S, Q, layout)
     stages(S, Q, geometry)
-    for old, new in (
-        (state.TRACK_FORCE_OLD, state.TRACK_FORCE),
-        (state.WHEELSET_FORCE_OLD, state.WHEELSET_FORCE),
-        (state.CONTACT_POWER_OLD, state.CONTACT_POWER),
-    ):
-        S[old : old + 3] = S[new : new + 3]
+    for block in ("TRACK_FORCE", "WHEELSET_FORCE", "CONTACT_POWER"):
+        S[blocks[f"{block}_OLD"]] = S[blocks[block]]
     # at rest the suspension bears what the contact pushes
-    pushed = S[state.WHEELSET_FORCE : state.WHEELSET_FORCE + 3]
-    free = -pushed / vehicle.mass[-3:, None]
-    S[state.WHEELSET_FREE : state.WHEELSET_FREE + 3] = free
-    S[state.WHEELSET_FREE_KNOWN : state.WHEELSET_FREE_KNOWN + 3] = free
+    free = -S[blocks["WHEELSET_FORCE"]] / vehicle.mass[-3:, None]
+    S[blocks["WHEELSET_FREE"]] = free
+    S[blocks["WHEELSET_FREE_KNOWN"]] = free
     # low-pass filters start from the steady state
     means = (
         -S[state.FORCE_Y, 0],
@@ -164,6 +155,6 @@ def start_state(
         S[state.LATERAL_LEFT, 0],
         S[state.LATERAL_RIGHT, 0],
     )
-    for first in (state.FILTER_X1, state.FILTER_X2, state.FILTER_Y1, state.FILTER_Y2):
-        S[first : first + len(FILTERED), 0] = means
+    for block in ("FILTER_X1", "FILTER_X2", "FILTER_Y1", "FILTER_Y2"):
+        S[blocks[block], 0] = means
     return S

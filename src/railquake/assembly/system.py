@@ -30,6 +30,7 @@ from railquake.assembly.start import (
 from railquake.assembly.supports import Structure, structure_of
 from railquake.assembly.vehicle import VehicleMatrices, vehicle_matrices
 from railquake.errors import InputError
+from railquake.inputs.identity import files_of
 from railquake.march import frames
 from railquake.march.compiler import CUDA, SCALAR, Kernel, Target, bind
 from railquake.march.rows import Layout, layout_of
@@ -142,7 +143,8 @@ class System:
             "abreast": frames.march_abreast,
             "device": frames.march_on_device,
         }
-        linearised = not alone or self.scenario.solver.hinge_solve == "linearised"
+        how = self.scenario.solver.hinge_solve
+        linearised = not alone if how is None else how == "linearised"
         laws = chosen({**self.choices, "engine": engine})
         laws.update(solving(self.structure.hinge, linearised, abreast=not alone))
         return bind(
@@ -225,10 +227,9 @@ def _at_rest(scenario: Scenario) -> _AtRest:
 
 def _stamps(scenario: Scenario) -> tuple[tuple[str, int, int], ...]:
     """Time and size of the files that it reads; reading them says what is wrong with others."""
-    wheelrail, support = scenario.wheelrail, scenario.support
     stamps = []
-    for path in (wheelrail.wheel.file, wheelrail.rail.file, getattr(support, "file", None)):
-        if path is not None:
+    for section in (scenario.wheelrail, scenario.support):
+        for path in files_of(section):
             with suppress(OSError):
                 found = os.stat(path)
                 stamps.append((path, found.st_mtime_ns, found.st_size))
@@ -279,9 +280,8 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
     start = start_state(blank, constants, geometry, at, track, stages, layout, vehicle)
 
     contact = stability.linear_contact(at.vehicle[-3:], at.drift, forces, track)
-    critical = stability.critical_time_step(
-        *stability.with_contact(contact, vehicle), solver.phi, solver.psi
-    )
+    held = stability.with_contact(contact, vehicle.stiffness, vehicle.damping)
+    critical = stability.critical_time_step(vehicle.mass, *held, solver.phi, solver.psi)
     if solver.step > critical:
         raise InputError(
             f"solver.dt: {solver.step:g} s is above the critical time step of {critical:.3g} s "
@@ -292,7 +292,7 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
         if isinstance(array, np.ndarray):
             array.setflags(write=False)
     # the contact forces are carried on over a step of the structure: they must be resolved by it
-    slow = min(critical, stability.slow_time_step(contact, vehicle, structure))
+    slow = min(critical, stability.slow_time_step(contact, vehicle.fastest_rate, structure))
     return _AtRest(
         vehicle, structure, layout, start, constants, geometry, choices, critical, slow, load
     )

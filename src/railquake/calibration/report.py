@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from railquake.calibration.calibrate import Calibration, LoopFacts, loop_facts
+from railquake.calibration.dynamic import Check
+from railquake.calibration.fit import FittedParameter
 from railquake.calibration.preset import preset_text
 from railquake.errors import InputError
 from railquake.files import whole_folder
@@ -44,20 +46,7 @@ def as_dict(calibration: Calibration) -> dict[str, Any]:
             "energy": fit.misfit.energy,
         },
         "hinge": fit.hinge.model_dump(),
-        "parameters": [
-            {
-                "name": p.name,
-                "unit": p.unit,
-                "value": p.value,
-                "interval": list(p.interval),
-                "bounds": [p.low, p.high],
-                "scaled": p.scaled,
-                "scaled_standard_error": p.scaled_error,
-                "at_bound": p.at_bound or None,
-                "determined": p.determined,
-            }
-            for p in fit.parameters
-        ],
+        "parameters": [_parameter(p) for p in fit.parameters],
         "bounds_touched": [p.name for p in fit.parameters if p.at_bound],
         "undetermined": [p.name for p in fit.parameters if not p.determined],
         "correlated": [list(pair) for pair in fit.correlated],
@@ -68,30 +57,52 @@ def as_dict(calibration: Calibration) -> dict[str, Any]:
             "flexural_stiffness_n_m2": pier.youngs_modulus * pier.second_moment_of_area,
             "chord_flexibility_rad_per_n_m": calibration.loop.flexibility,
         },
-        "loop": {
-            "reference": _facts(loop_facts(calibration.loop.chord, calibration.loop.moment)),
-            "fitted": _facts(loop_facts(calibration.loop.chord, fit.moment)),
-            "former": {
-                "name": calibration.former.name,
-                **_facts(loop_facts(calibration.loop.chord, calibration.former_moment)),
-            },
-        },
-        "checks": [
-            {
-                "motion": check.name,
-                "pga_m_s2": check.pga,
-                "peak_reference_m": check.peak_reference,
-                "peak_m": check.peak_ours,
-                "peak_error": check.peak_error,
-                "history_rms_over_peak": check.history_error,
-                "left_at_end_over_peak": check.residual_error,
-                "peak_drift": check.peak_reference / check.length,
-                "beyond_protocol": is_beyond(calibration, check.peak_reference / check.length),
-            }
-            for check in calibration.checks
-        ],
+        "loop": _loops(calibration),
+        "checks": [_check(calibration, check) for check in calibration.checks],
         "fibre_column": None if calibration.column is None else _column(calibration),
         "versions": versions(),
+    }
+
+
+def _parameter(p: FittedParameter) -> dict[str, Any]:
+    return {
+        "name": p.name,
+        "unit": p.unit,
+        "value": p.value,
+        "interval": list(p.interval),
+        "bounds": [p.low, p.high],
+        "scaled": p.scaled,
+        "scaled_standard_error": p.scaled_error,
+        "at_bound": p.at_bound or None,
+        "determined": p.determined,
+    }
+
+
+def _loops(calibration: Calibration) -> dict[str, Any]:
+    """Reference, fitted and former hinge along the same path."""
+    chord = calibration.loop.chord
+    return {
+        "reference": _facts(loop_facts(chord, calibration.loop.moment)),
+        "fitted": _facts(loop_facts(chord, calibration.fit.moment)),
+        "former": {
+            "name": calibration.former.name,
+            **_facts(loop_facts(chord, calibration.former_moment)),
+        },
+    }
+
+
+def _check(calibration: Calibration, check: Check) -> dict[str, Any]:
+    drift = check.peak_reference / check.length
+    return {
+        "motion": check.name,
+        "pga_m_s2": check.pga,
+        "peak_reference_m": check.peak_reference,
+        "peak_m": check.peak_ours,
+        "peak_error": check.peak_error,
+        "history_rms_over_peak": check.history_error,
+        "left_at_end_over_peak": check.residual_error,
+        "peak_drift": drift,
+        "beyond_protocol": is_beyond(calibration, drift),
     }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -106,16 +106,8 @@ def calibrate_hinge(
     from railquake import calibration
     from railquake.files import prepare_folder
     from railquake.inputs.support import Pier
-    from railquake.inputs.units import to_si
 
-    over: dict[str, Any] = {}
-    for key, value, dimension, option in (
-        ("length", length, "length", "--length"),
-        ("youngs_modulus", young, "pressure", "--young"),
-        ("second_moment_of_area", inertia, "second moment of area", "--inertia"),
-    ):
-        if value is not None:
-            over[key] = to_si(_number(value), dimension, option, sign="positive")
+    over = _elastic_column(length, young, inertia)
     pier = Pier.from_preset(support, over)
     loop = calibration.read_loop(
         cyclic,
@@ -133,6 +125,21 @@ def calibrate_hinge(
             loop, pier, source=source, starts=starts, progress=progress, notify=notify
         )
     _finish(found, out, as_json)
+
+
+def _elastic_column(length: str | None, young: str | None, inertia: str | None) -> dict[str, float]:
+    """What the options say of the column in the place of the support's."""
+    from railquake.inputs.units import to_si
+
+    return {
+        key: to_si(_number(value), dimension, option, sign="positive")
+        for key, value, dimension, option in (
+            ("length", length, "length", "--length"),
+            ("youngs_modulus", young, "pressure", "--young"),
+            ("second_moment_of_area", inertia, "second moment of area", "--inertia"),
+        )
+        if value is not None
+    }
 
 
 def _number(text: str) -> str | float:

@@ -19,6 +19,8 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 TIE = 1e-9  # of ln ratio
 FEWEST_PAIRS = 5
+SIGNIFICANT = 0.05
+CLOSE = (0.95, 1.05)  # a median ratio that an engineer would call equal
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,20 @@ class PairedComparison:
     records_below: int = 0
     p_value_pairs: float = math.nan
     missing: str = ""
+
+    @property
+    def direction(self) -> int:
+        """1 up, -1 down, 0 not to be told: by the interval of the median, and the sign test."""
+        if self.missing or not math.isfinite(self.p_value) or self.p_value >= SIGNIFICANT:
+            return 0
+        if self.median.above(1.0):
+            return 1
+        return -1 if self.median.below(1.0) else 0
+
+    @property
+    def close(self) -> bool:
+        """Whether the median is what an engineer would call equal."""
+        return CLOSE[0] <= self.median.value <= CLOSE[1]
 
 
 def pairs_of(table: pd.DataFrame, quantity: str, model: str, reference: str) -> pd.DataFrame:

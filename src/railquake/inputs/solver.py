@@ -36,9 +36,12 @@ class Solver(InputModel):
         Literal["table", "grid"], Field(description="How contact is found; grid is the reference")
     ] = "table"
     hinge_solve: Annotated[
-        Literal["newton", "linearised"],
-        Field(description="Newton iterations, or one consistently linearised solve per step"),
-    ] = "newton"
+        Literal["newton", "linearised"] | None,
+        Field(
+            description="Newton iterations, or one consistently linearised solve per step; without "
+            "it newton in a run by itself and linearised where many run abreast"
+        ),
+    ] = None
     substeps: Annotated[
         Integer | None,
         Field(

@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, get_type_hints
+from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
 from railquake.march.declaration import Part, Row
 from railquake.march.rows_constant import CONSTANT_ROWS
@@ -61,15 +61,18 @@ class Layout:
     Attributes
     ----------
     state, constant, size : Numbers
-    state_parts, constant_parts : tuple of (Part, int, bool)
-        Each named row, its number, and whether it is the train's.
+    state_blocks, constant_blocks : dict of str to slice
+        All rows of each declaration, by its name.
+    state_parts : tuple of (Part, int, bool)
+        Each named row of the state, its number, and whether it is the train's.
     """
 
     state: Numbers
     constant: Numbers
     size: Numbers
+    state_blocks: dict[str, slice]
+    constant_blocks: dict[str, slice]
     state_parts: tuple[tuple[Part, int, bool], ...]
-    constant_parts: tuple[tuple[Part, int, bool], ...]
 
     def numbers(self, kind: str) -> Numbers:
         """``state``, ``constant`` or ``size``, whichever is of that kind."""
@@ -93,17 +96,26 @@ def hinge_parts(prefix: str, fields: type) -> Row:
                False)  # fmt: skip
 
 
-def _place(
-    rows: Sequence[Row], sizes: Mapping[str, int]
-) -> tuple[dict[str, Any], list[tuple[Part, int, bool]], int]:
-    """Numbers by name; named rows; rows in all."""
+class _Placed(NamedTuple):
+    """Where declared rows stand."""
+
+    numbers: dict[str, Any]
+    blocks: dict[str, slice]
+    parts: tuple[tuple[Part, int, bool], ...]
+    total: int
+
+
+def _place(rows: Sequence[Row], sizes: Mapping[str, int]) -> _Placed:
+    """One after the other."""
     numbers: dict[str, Any] = {}
+    blocks = {}
     parts = []
     released = []
     at = 0
     for row in rows:
         count = sizes[row.rows] if isinstance(row.rows, str) else row.rows
         numbers[row.name] = at
+        blocks[row.name] = slice(at, at + count)
         place = 0
         for part in row.parts:
             if part.at is not None:
@@ -115,7 +127,7 @@ def _place(
             released.append((at, at + count))
         at += count
     numbers["RELEASED"] = tuple(released)
-    return numbers, parts, at
+    return _Placed(numbers, blocks, tuple(parts), at)
 
 
 @cache
@@ -143,14 +155,16 @@ def _layout(
     }
     own = hinge_parts("HINGE", type(hinge.virgin))
     given = hinge_parts("HINGE", hinge.parameter_fields)
-    states, state_parts, sizes["STATE_ROWS"] = _place((*STATE_ROWS, own), sizes)
-    constants, constant_parts, sizes["CONSTANT_ROWS"] = _place((*CONSTANT_ROWS, given), sizes)
+    states = _place((*STATE_ROWS, own), sizes)
+    constants = _place((*CONSTANT_ROWS, given), sizes)
+    sizes["STATE_ROWS"], sizes["CONSTANT_ROWS"] = states.total, constants.total
     return Layout(
-        Numbers("row of the state", states),
-        Numbers("row of the constants", constants),
+        Numbers("row of the state", states.numbers),
+        Numbers("row of the constants", constants.numbers),
         Numbers("size", sizes),
-        tuple(state_parts),
-        tuple(constant_parts),
+        states.blocks,
+        constants.blocks,
+        states.parts,
     )
 
 

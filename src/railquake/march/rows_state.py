@@ -1,6 +1,7 @@
 """The rows of the state ``S[row, lane]``: everything of a run that changes with time."""
 
 from railquake.march.declaration import Row, block, row
+from railquake.measures import MEASURES, StateRow
 from railquake.physics.derailment import EVENTS
 
 __all__ = ["FILTERED", "PATCHES", "STATE_ROWS"]
@@ -226,21 +227,6 @@ _ENERGY = (
     row("HERTZ_LEFT", "J", "Hertz energy that goes with it"),
 )
 
-_PEAKS = (
-    row("PEAK_U", "m", "largest displacement of the pier's top"),
-    row("PEAK_U_V", "m/s", "largest velocity of the pier's top"),
-    row("PEAK_U_A", "m/s2", "largest acceleration of the pier's top, absolute"),
-    row("PEAK_THETA1", "rad", "largest rotation of the hinge"),
-    row("PEAK_MOMENT", "N m", "largest moment of the hinge"),
-    row("PEAK_THETA2", "rad", "largest rotation of the pier's top"),
-    row("PEAK_ROLL", "rad", "largest relative roll"),
-    row("PEAK_SHIFT", "m", "largest lateral shift"),
-    row("PEAK_LOAD", "N", "largest load of one side's wheels"),
-    row("PEAK_LATERAL", "N", "largest lateral force on the track"),
-    row("TIME_ONE_WHEEL", "s", "with at least one wheel off its rail"),
-    row("TIME_DETACHED", "s", "with both wheels off"),
-)
-
 _FRAME = (
     block(
         "SUM",
@@ -301,8 +287,24 @@ _VEHICLE = (
     row("VEHICLE_STEP", "m or rad", "last increment of the displacement", rows="DOFS"),
 )
 
-STATE_ROWS: tuple[Row, ...] = (
-    *_GROUND, *_STRUCTURE, *_TRACK, *_WHEELSET, *_CELLS, *_PATCHES, *_FORCES, *_SUSPENSION,
-    *_ENERGY, *_PEAKS, *_FRAME, *_PRESCRIBED, *_VEHICLE,
+_BEFORE: tuple[Row, ...] = (
+    *_GROUND, *_STRUCTURE, *_TRACK, *_WHEELSET, *_CELLS, *_PATCHES, *_FORCES, *_SUSPENSION, *_ENERGY
 )  # fmt: skip
+_AFTER: tuple[Row, ...] = (*_FRAME, *_PRESCRIBED, *_VEHICLE)
+
+
+def _measured() -> tuple[Row, ...]:
+    """One row for each measure that is the last value of a row of its own; it begins at zero.
+
+    The measure is its declaration; `peaks` accumulates it.
+    """
+    declared = {row.name for row in (*_BEFORE, *_AFTER)}
+    return tuple(
+        row(measure.place.name, measure.unit, measure.caption)
+        for measure in MEASURES
+        if isinstance(measure.place, StateRow) and measure.place.name not in declared
+    )
+
+
+STATE_ROWS: tuple[Row, ...] = (*_BEFORE, *_measured(), *_AFTER)
 """The hinge's own rows follow: `rows.hinge_parts`."""

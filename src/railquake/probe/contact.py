@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,12 @@ if TYPE_CHECKING:
     from railquake.inputs.wheelrail import WheelRail
 
 __all__ = ["Patch", "StandingWheelset", "standing_contact", "standing_wheelset"]
+
+REACH = 0.05  # roll up to which the wheelset's is looked for, rad
+DEEPEST = 5e-3  # approach, m
+
+_Zone = tuple[float, ...]  # of physics.profiles.zone_extremum
+_Side = Sequence[_Zone]  # tread and flange
 
 
 @dataclass(frozen=True)
@@ -100,49 +107,18 @@ def standing_wheelset(wheelrail: WheelRail, shift: float, load: float) -> Standi
     """
     geometry = build_geometry(wheelrail)
 
-    def zones(psi: float) -> list[list[tuple[float, ...]]]:
-        found = []
-        for sign in (-1.0, 1.0):
-            side: list[tuple[float, ...]] = []
-            for first, last in (
-                (geometry.flange_points, len(geometry.wheel_y)),
-                (0, geometry.flange_points),
-            ):
-                side.append(zone_extremum(sign * shift, sign * psi, first, last, geometry))
-            found.append(side)
-        return found
-
-    def height(side: list[tuple[float, ...]]) -> float:
-        """Z at which the side bears the load."""
-        low = min(zone[0] for zone in side)
-
-        def excess(z: float) -> float:
-            total = 0.0
-            for zone in side:
-                _, normal = _normal(zone, z, geometry)
-                total += normal / math.hypot(1.0, zone[1])
-            return total - load
-
-        if excess(low + 5e-3) < 0.0:
-            raise InputError(
-                f"a load of {load:g} N presses the wheel more than 5 mm into the rail at a shift "
-                f"of {1e3 * shift:g} mm; take a smaller load or shift"
-            )
-        return float(brentq(excess, low, low + 5e-3, xtol=1e-15))
-
     def unevenness(psi: float) -> float:
-        left, right = zones(psi)
-        return height(left) - height(right)
+        left, right = _zones(geometry, shift, psi)
+        return _height(geometry, left, shift, load) - _height(geometry, right, shift, load)
 
-    reach = 0.05
-    if unevenness(-reach) * unevenness(reach) > 0.0:
+    if unevenness(-REACH) * unevenness(REACH) > 0.0:
         raise InputError(
             f"at a shift of {1e3 * shift:g} mm the wheelset does not stand on both rails; take a "
             "smaller one"
         )
-    psi = float(brentq(unevenness, -reach, reach, xtol=1e-14))
-    left, right = zones(psi)
-    z = height(left)
+    psi = float(brentq(unevenness, -REACH, REACH, xtol=1e-14))
+    left, right = _zones(geometry, shift, psi)
+    z = _height(geometry, left, shift, load)
     modulus = effective_modulus(wheelrail.youngs_modulus, wheelrail.poisson_ratio)
     patches = []
     for name, sign, side in (("left", -1.0, left), ("right", 1.0, right)):
@@ -150,32 +126,72 @@ def standing_wheelset(wheelrail: WheelRail, shift: float, load: float) -> Standi
             approach, normal = _normal(zone, z, geometry)
             if normal <= 0.0:
                 continue
-            _, slope, _, place, rail_z, lateral, rolling, _ = zone
-            if abs(slope) > 0.99 * STEEPEST or rail_z > 0.99 * FLOOR:  # beside the drawn rail head
+            if _is_beside_rail(zone):
                 raise InputError(
                     f"at a shift of {1e3 * shift:g} mm the wheelset stands beside the {name} "
                     "rail; take a smaller one"
                 )
-            total = lateral + rolling
-            theta = np.array([math.acos((rolling - lateral) / total)])
-            m, n, _ = hertz_coefficients(theta)
-            size = (3.0 * normal / (4.0 * modulus * total)) ** (1.0 / 3.0)
-            patches.append(
-                Patch(
-                    name,
-                    float(sign * place),
-                    float(rail_z),
-                    -math.atan(slope),
-                    float(approach),
-                    float(normal),
-                    float(m[0] * size),
-                    float(n[0] * size),
-                )
-            )
+            patches.append(_patch(name, sign, zone, approach, normal, modulus))
     return StandingWheelset(shift, z, psi, patches)
 
 
-def _normal(zone: tuple[float, ...], z: float, geometry: Geometry) -> tuple[float, float]:
+def _zones(geometry: Geometry, shift: float, psi: float) -> tuple[_Side, _Side]:
+    """Where the wheels come nearest to their rails, left and right."""
+    parts = ((geometry.flange_points, len(geometry.wheel_y)), (0, geometry.flange_points))
+    left, right = (
+        [zone_extremum(sign * shift, sign * psi, first, last, geometry) for first, last in parts]
+        for sign in (-1.0, 1.0)
+    )
+    return left, right
+
+
+def _height(geometry: Geometry, side: _Side, shift: float, load: float) -> float:
+    """Z at which a side bears the load."""
+    low = min(zone[0] for zone in side)
+
+    def excess(z: float) -> float:
+        total = 0.0
+        for zone in side:
+            _, normal = _normal(zone, z, geometry)
+            total += normal / math.hypot(1.0, zone[1])
+        return total - load
+
+    if excess(low + DEEPEST) < 0.0:
+        raise InputError(
+            f"a load of {load:g} N presses the wheel more than {1e3 * DEEPEST:g} mm into the rail "
+            f"at a shift of {1e3 * shift:g} mm; take a smaller load or shift"
+        )
+    return float(brentq(excess, low, low + DEEPEST, xtol=1e-15))
+
+
+def _is_beside_rail(zone: _Zone) -> bool:
+    """Whether a zone lies on what the profile is continued with beside the drawn rail head."""
+    _, slope, _, _, rail_z, _, _, _ = zone
+    return abs(slope) > 0.99 * STEEPEST or rail_z > 0.99 * FLOOR
+
+
+def _patch(
+    name: str, sign: float, zone: _Zone, approach: float, normal: float, modulus: float
+) -> Patch:
+    """A zone's patch with its ellipse after Hertz."""
+    _, slope, _, place, rail_z, lateral, rolling, _ = zone
+    total = lateral + rolling
+    theta = np.array([math.acos((rolling - lateral) / total)])
+    m, n, _ = hertz_coefficients(theta)
+    size = (3.0 * normal / (4.0 * modulus * total)) ** (1.0 / 3.0)
+    return Patch(
+        name,
+        float(sign * place),
+        float(rail_z),
+        -math.atan(slope),
+        float(approach),
+        float(normal),
+        float(m[0] * size),
+        float(n[0] * size),
+    )
+
+
+def _normal(zone: _Zone, z: float, geometry: Geometry) -> tuple[float, float]:
     """Approach and normal force of a zone with the wheelset's centre at ``z``."""
     gap, slope, _, _, _, lateral, rolling, _ = zone
     approach = max(z - gap, 0.0) / math.hypot(1.0, slope)

@@ -25,25 +25,19 @@ def audit(system: System, end: Array) -> EnergyAudit:
     system : System
     end : array, shape (state rows, 1)
     """
-    state, constant = system.layout.state, system.layout.constant
+    state, blocks = system.layout.state, system.layout.state_blocks
+    constants = system.layout.constant_blocks
     first, last, q = system.start[:, 0], end[:, 0], system.constants[:, 0]
-    dofs = system.layout.size.DOFS
-    entries = system.layout.size.VEHICLE_ENTRIES
-    suspension = unpacked(q[constant.STIFFNESS : constant.STIFFNESS + entries])
-    inverse_mass = q[constant.INVERSE_MASS : constant.INVERSE_MASS + dofs]
+    suspension = unpacked(q[constants["STIFFNESS"]])
+    inverse_mass = q[constants["INVERSE_MASS"]]
     structure = system.structure
-    count = len(structure.mass)
-
-    def vehicle_x(s: Array) -> Array:
-        return s[state.VEHICLE_X : state.VEHICLE_X + dofs]
 
     def stored(s: Array) -> tuple[float, float]:
         """Kinetic and elastic energy."""
-        x = s[state.STRUCTURE_X : state.STRUCTURE_X + count]
-        v = s[state.STRUCTURE_V : state.STRUCTURE_V + count]
+        x, v = s[blocks["STRUCTURE_X"]], s[blocks["STRUCTURE_V"]]
         kinetic = 0.5 * float(v @ (structure.mass * v)) if structure.moves else 0.0
         elastic = 0.5 * float(x @ structure.stiffness @ x) if structure.moves else 0.0
-        x, v = vehicle_x(s), s[state.VEHICLE_V : state.VEHICLE_V + dofs]
+        x, v = s[blocks["VEHICLE_X"]], s[blocks["VEHICLE_V"]]
         kinetic += 0.5 * float(v @ (v / inverse_mass))
         elastic += 0.5 * float(x @ suspension @ x)
         return kinetic, elastic
@@ -53,7 +47,7 @@ def audit(system: System, end: Array) -> EnergyAudit:
     # a vehicle that has left the model took its kinetic energy along
     gone = 0.0
     if last[state.ON_TRACK] == 0.0:
-        x = vehicle_x(last)
+        x = last[blocks["VEHICLE_X"]]
         gone = float(last[state.VEHICLE_ENERGY]) - 0.5 * float(x @ suspension @ x)
     kinetic = kinetic_end - kinetic_start + gone
     elastic = elastic_end - elastic_start

@@ -31,6 +31,7 @@ from railquake.run.time_step import TimeStep, search_time_step
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
+    from railquake.inputs.solver import Solver
 
 __all__ = [
     "Device",
@@ -74,8 +75,9 @@ def simulate_many(
         far from their rails; in between the degradation is extrapolated.  With steps above 1e-5 s
         they are fewer, so that no more than `REFRESH_TIME` passes.
     hinge_solve : {"linearised", "newton"}
-        One consistently linearised solve of the hinge a step; or each scenario run by `simulate`,
-        which iterates where the scenario says so, at a fifth of the speed.
+        One consistently linearised solve of the hinge a step, unless a scenario's own
+        ``solver.hinge_solve`` says "newton"; or each scenario run by `simulate`, which iterates
+        unless it says "linearised", at a fifth of the speed.
     device : {"cpu", "cuda"}
         ``cuda`` runs thousands of scenarios at once on an NVIDIA GPU; it pays from some thousands.
         What is left to `simulate` runs on the CPU all the same.
@@ -99,7 +101,7 @@ def simulate_many(
     The step is that of `simulate`, but for the hinge (one consistently linearised solve a step, and
     its degradation extrapolated between evaluations) and, unless ``solver.substeps`` says
     otherwise, for the longer step of structure and sprung bodies (`march.step`).  The grid method
-    of contact is run by `simulate` itself.
+    of contact and a hinge that is to be iterated are run by `simulate` itself.
     """
     make_lanes = lanes_on(device)
     count = threads
@@ -343,7 +345,7 @@ def run_here(
         try:
             settled_scenario, choice = settled(scenario)
             system = assemble(settled_scenario)
-            if singly or scenario.solver.contact == "grid":
+            if singly or _by_itself(scenario.solver):
                 row = assess(replace(simulate(system), time_step=choice))
             else:
                 row = None
@@ -368,6 +370,11 @@ def run_here(
         batch.load(_Job(index, system, begin, choice))
     for batch in batches.values():
         yield from batch.drained(stop)
+
+
+def _by_itself(solver: Solver) -> bool:
+    """Whether a scenario asks for what many abreast do not do."""
+    return solver.contact == "grid" or solver.hinge_solve == "newton"
 
 
 def group_of(system: System) -> Any:

@@ -91,8 +91,8 @@ def let_pier_go(shape: np.ndarray, seconds: float) -> tuple[np.ndarray, np.ndarr
     }  # fmt: skip
     system = disturbed(rq.assemble(rq.scenario(**case)), {"pier": shape.tolist()}, {})
     mass, stiffness = pier_matrices()
-    first = system.layout.state.STRUCTURE_A
-    system.start[first : first + 3, 0] = -(stiffness @ shape) / mass
+    accelerations = system.layout.state_blocks["STRUCTURE_A"]
+    system.start[accelerations, 0] = -(stiffness @ shape) / mass
     response = rq.simulate(system)
     names = ("bridge_displacement_m", "hinge_rotation_rad", "top_rotation_rad")
     return response.times, np.column_stack([response.channel(name) for name in names])

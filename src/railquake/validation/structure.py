@@ -69,7 +69,7 @@ def march_pier(column: Pier, ground: Array, dt: float) -> Array:
     fill_structure(q[:, 0], made, layout)
     fill_substeps(q[:, 0], 1, layout)
     s = np.zeros((layout.size.STATE_ROWS, 1))
-    s[state.HINGE : state.HINGE + len(law.virgin), 0] = law.virgin
+    s[layout.state_blocks["HINGE"], 0] = law.virgin
     laws = {**chosen({"hinge law": made.hinge}), **solving(made.hinge, False, False)}
     step = bind(move_structure_with_hinge, SCALAR, laws, layout).call
     rows = [getattr(state, name) for name in QUANTITIES.values()]

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from railquake.assembly import vehicle_matrices
 from railquake.inputs.vehicle import Body, Dashpot, Spring, Vehicle
-from railquake.physics.vehicle import element_row, fixed_wheelset_modes, kernel_order, lateral_block
+from railquake.march.order import kernel_order, lateral_block
+from railquake.physics.suspension import element_row
+from railquake.physics.vehicle import fixed_wheelset_modes
 
 numbers = st.floats(-2.0, 2.0, allow_subnormal=False)
 

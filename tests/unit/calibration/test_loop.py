@@ -6,7 +6,7 @@ import pytest
 from railquake.calibration.cyclic import Loop, resampled
 from railquake.calibration.loop import column_flexibility, drive_hinge
 from railquake.calibration.misfit import dissipated, energy_by_cycle, loop_misfit
-from railquake.physics.kernel import PYTHON
+from railquake.march.compiler import PYTHON
 from railquake.probe import run_hinge
 
 

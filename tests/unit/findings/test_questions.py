@@ -4,16 +4,9 @@ import pytest
 
 from made_up_runs import table
 from railquake.findings import Evidence, answer_questions, gather
-from railquake.findings.questions import (
-    BORNE_OUT,
-    IN_PART,
-    NOT_BORNE_OUT,
-    NOT_TESTED,
-    chance,
-    interval,
-    number,
-)
+from railquake.findings.claim import BORNE_OUT, IN_PART, NOT_BORNE_OUT, NOT_TESTED
 from railquake.findings.resampling import Estimate
+from railquake.findings.words import chance, interval, number
 
 FEW = 60  # replicates
 

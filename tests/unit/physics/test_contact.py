@@ -8,19 +8,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from railquake.inputs.wheelrail import WheelRail
-from railquake.physics.contact import (
-    calibrated_hysteresis,
+from railquake.physics.hertz import (
     effective_modulus,
     hertz_coefficients,
     hertz_lookup,
     hertz_table,
-    normal_force,
-    onset_hysteresis,
-    printed_hysteresis,
 )
+from railquake.physics.impact import RESTITUTION_LAWS, frozen_at_onset, normal_force
 from railquake.probe import standing_contact
 
 STEEL = (209.92e9, 0.28)  # CONTACT's steel
+PRINTED = RESTITUTION_LAWS["hunt-crossley"].coefficient
+CALIBRATED = RESTITUTION_LAWS["calibrated"].coefficient
 
 
 def test_hertz_of_a_wheel_on_a_rail_crown():
@@ -64,7 +63,7 @@ def rebound(alpha, mass=1000.0, stiffness=1e11, speed=0.5):
         delta += dt * half
         if delta <= 0.0:
             return -half / speed
-        hysteresis = onset_hysteresis(True, hysteresis, half, alpha, 0.1)
+        hysteresis = frozen_at_onset(True, hysteresis, half, alpha, 0.1)
         force, _ = normal_force(delta, half, stiffness, hysteresis)
         rate = half - 0.5 * dt * force / mass
 
@@ -74,14 +73,14 @@ def rebound(alpha, mass=1000.0, stiffness=1e11, speed=0.5):
 )
 def test_printed_law_rebounds_higher_than_its_coefficient(restitution, actual):
     """physics.md, section 2, Eq. 7: rebounds of a free impact."""
-    assert rebound(printed_hysteresis(restitution)) == pytest.approx(actual, rel=0.01)
+    assert rebound(PRINTED(restitution)) == pytest.approx(actual, rel=0.01)
 
 
 @pytest.mark.parametrize(("restitution", "alpha"), [(0.9, 0.167), (0.6, 0.975), (0.3, 3.09)])
 def test_calibrated_law_rebounds_at_its_coefficient(restitution, alpha):
     """physics.md, section 2, Eq. 7."""
-    assert calibrated_hysteresis(restitution) == pytest.approx(alpha, rel=5e-3)
-    assert rebound(calibrated_hysteresis(restitution)) == pytest.approx(restitution, rel=0.01)
+    assert CALIBRATED(restitution) == pytest.approx(alpha, rel=5e-3)
+    assert rebound(CALIBRATED(restitution)) == pytest.approx(restitution, rel=0.01)
 
 
 @given(delta=st.floats(0.0, 1e-3), rate=st.floats(-5.0, 5.0), hysteresis=st.floats(0.0, 10.0))
@@ -93,8 +92,8 @@ def test_normal_force_never_pulls(delta, rate, hysteresis):
 
 
 def test_hysteresis_is_frozen_at_the_onset_and_forgotten_when_contact_is_lost():
-    first = onset_hysteresis(True, 0.0, 0.5, 0.45, 0.1)
+    first = frozen_at_onset(True, 0.0, 0.5, 0.45, 0.1)
     assert first == pytest.approx(0.9)
-    assert onset_hysteresis(True, first, 0.01, 0.45, 0.1) == first
-    assert onset_hysteresis(False, first, 0.01, 0.45, 0.1) == 0.0
-    assert onset_hysteresis(True, 0.0, 0.001, 0.45, 0.1) == pytest.approx(4.5)  # bounded below
+    assert frozen_at_onset(True, first, 0.01, 0.45, 0.1) == first
+    assert frozen_at_onset(False, first, 0.01, 0.45, 0.1) == 0.0
+    assert frozen_at_onset(True, 0.0, 0.001, 0.45, 0.1) == pytest.approx(4.5)  # bounded below

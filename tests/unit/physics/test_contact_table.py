@@ -10,11 +10,14 @@ from hypothesis import strategies as st
 import railquake as rq
 from railquake.assembly.geometry import ROLL_AXIS, SHIFT_AXIS
 from railquake.inputs.ground_motion import GroundMotion
-from railquake.physics import constant, march, state
-from railquake.physics.profiles import axis_nodes, zone_contact
-from railquake.physics.vehicle import DOF_COUNT
+from railquake.march import contact
+from railquake.march.rows import constant, size, state
+from railquake.march.step import find_contact_forces
+from railquake.physics.contact_table import axis_nodes
+from railquake.physics.profiles import zone_contact
+from stages import stage
 
-WHEELSET = state.VEHICLE + np.array([2 * (DOF_COUNT // 3) - 2, DOF_COUNT - 1])  # y, z
+WHEELSET = np.array([size.WHEELSET_Y, size.WHEELSET_Z, size.WHEELSET_PHI])
 SIDES = {"left": 0, "right": 1}
 ZONES = {"tread": 0, "flange": 1}
 
@@ -24,25 +27,25 @@ class Bench:
 
     def __init__(self, system):
         self.system = system
+        self.find_contact_forces = stage(system, find_contact_forces)
 
     def place(self, shift, height, roll, velocity=(0.0, 0.0, 0.0)):
         """State with the wheelset held there over a level track."""
         s = self.system.start.copy()
-        y, z = WHEELSET
-        s[[y, z, y + 1], 0] = (
+        s[state.VEHICLE_X + WHEELSET, 0] = (
             shift,
             height + self.system.constants[constant.WHEELSET_HEIGHT, 0],
             roll,
         )
-        s[[y + DOF_COUNT, z + DOF_COUNT, y + 1 + DOF_COUNT], 0] = velocity
-        march.find_contact_forces(s, self.system.constants, self.system.geometry)
+        s[state.VEHICLE_V + WHEELSET, 0] = velocity
+        self.find_contact_forces(s, self.system.constants, self.system.geometry)
         return s
 
     def patch(self, shift, roll, side, zone):
         """G, dG/dY, dG/dpsi ... in the axes of a right-hand wheel."""
         s = self.place(shift, -1.0, roll)  # well clear
         q, geometry = self.system.constants, self.system.geometry
-        return march.patch_at(s, q, geometry, SIDES[side], ZONES[zone], 0)
+        return contact.patch_by_table(s, q, geometry, SIDES[side], ZONES[zone], 0)
 
     def searched(self, shift, roll, zone):
         """The same for a right-hand wheel by the grid method."""
@@ -182,7 +185,7 @@ def test_level_wheelset_bears_on_two_wheels_lifted_on_one_high_up_on_none(bench)
 def test_grid_search_in_the_tables_place_gives_the_same_patch(bench, side, zone):
     s = bench.place(0.0031, -0.391, -0.0012)
     geometry, q = bench.system.geometry, bench.system.constants
-    table = march.patch_at(s, q, geometry, SIDES[side], ZONES[zone], 0)
-    grid = march.search_grid(s, q, geometry, SIDES[side], ZONES[zone], 0)
+    table = contact.patch_by_table(s, q, geometry, SIDES[side], ZONES[zone], 0)
+    grid = contact.patch_by_grid(s, q, geometry, SIDES[side], ZONES[zone], 0)
     assert grid[0] == pytest.approx(table[0], abs=2e-6)
     assert grid[1:] == pytest.approx(table[1:], rel=0.02, abs=2e-3)

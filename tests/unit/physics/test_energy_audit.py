@@ -1,14 +1,15 @@
 """The audit's sums: each entry from the rows it stands for, both balances by hand."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from jolts import pushed
-from railquake.physics import constant, state
-from railquake.physics.energy import EnergyAudit, audit
-from railquake.physics.vehicle import kernel_order
+from railquake.march.order import kernel_order
+from railquake.march.rows import constant, state
+from railquake.physics.energy import EnergyAudit
+from railquake.run.audit import audit
 
 ROWS = {
     "ground": state.WORK_GROUND,
@@ -36,31 +37,37 @@ def drawn(system, seed, on_track=1.0):
     return values
 
 
-def mechanical(system, s, q=None):
+def audited(system, first, last, **structure):
+    """The audit between two states, with other values of the structure."""
+    return audit(
+        replace(system, start=first, structure=replace(system.structure, **structure)), last
+    )
+
+
+def mechanical(system, s, column=None):
     """Kinetic and elastic energy by the matrices."""
     matrices, order = system.vehicle, kernel_order(9)
     x, v = np.empty(9), np.empty(9)
-    x[order] = s[state.VEHICLE : state.VEHICLE + 9, 0]
-    v[order] = s[state.VEHICLE + 9 : state.VEHICLE + 18, 0]
-    q = (system.constants if q is None else q)[:, 0]
+    x[order] = s[state.VEHICLE_X : state.VEHICLE_X + 9, 0]
+    v[order] = s[state.VEHICLE_V : state.VEHICLE_V + 9, 0]
+    q = system.constants[:, 0]
     k = q[constant.K : constant.K + 6]
-    column = np.array([[k[0], k[1], k[2]], [k[1], k[3], k[4]], [k[2], k[4], k[5]]])
+    if column is None:
+        column = np.array([[k[0], k[1], k[2]], [k[1], k[3], k[4]], [k[2], k[4], k[5]]])
     u, u_v = s[state.U : state.U + 3, 0], s[state.U_V : state.U_V + 3, 0]
     car = 0.5 * v @ (matrices.mass * v), 0.5 * x @ matrices.stiffness @ x
-    bridge = 0.5 * u_v @ (q[constant.M_U : constant.M_U + 3] * u_v), 0.5 * u @ column @ u
+    bridge = 0.5 * u_v @ (q[constant.MASS : constant.MASS + 3] * u_v), 0.5 * u @ column @ u
     return np.array(car), np.array(bridge)
 
 
 @pytest.mark.parametrize("reaction", [1.0, 0.0])
 def test_each_entry_and_both_balances(system, reaction):
-    q = system.constants.copy()
-    q[constant.REACTION] = reaction
-    q[constant.K : constant.K + 6, 0] = (3.0, 1.0, -2.0, 7.0, 0.5, 5.0)  # all different
+    column = np.array([[3.0, 1.0, -2.0], [1.0, 7.0, 0.5], [-2.0, 0.5, 5.0]])  # all different
     first, last = drawn(system, 1), drawn(system, 2)
-    found = audit(first, last, q)
+    found = audited(system, first, last, reaction=reaction, stiffness=column)
     for name, row in ROWS.items():
         assert getattr(found, name) == last[row, 0]
-    change = sum(mechanical(system, last, q)) - sum(mechanical(system, first, q))
+    change = sum(mechanical(system, last, column)) - sum(mechanical(system, first, column))
     assert (found.kinetic, found.elastic) == pytest.approx(tuple(change))
     hertz = last[state.HERTZ_ENERGY, 0] + last[state.HERTZ_LEFT, 0] - first[state.HERTZ_ENERGY, 0]
     assert found.hertz == pytest.approx(hertz)
@@ -73,10 +80,8 @@ def test_each_entry_and_both_balances(system, reaction):
 
 
 def test_a_support_without_mass_has_no_energy(system):
-    q = system.constants.copy()
-    q[constant.PIER_LOAD] = 0.0
     first, last = drawn(system, 1), drawn(system, 2)
-    found = audit(first, last, q)
+    found = audited(system, first, last, ground_load=np.zeros(3))
     change = mechanical(system, last)[0] - mechanical(system, first)[0]
     assert (found.kinetic, found.elastic) == pytest.approx(tuple(change))
 
@@ -84,9 +89,9 @@ def test_a_support_without_mass_has_no_energy(system):
 def test_a_train_that_left_took_its_energy_along(system):
     """What it had when it left is on record; its springs stay as they were then."""
     first, last = drawn(system, 1), drawn(system, 2, on_track=0.0)
-    last[state.VEHICLE + 9 : state.VEHICLE + 18] = 0.0  # released: it stands
+    last[state.VEHICLE_V : state.VEHICLE_V + 9] = 0.0  # released: it stands
     last[state.VEHICLE_ENERGY] = 1e9
-    found = audit(first, last, system.constants)
+    found = audited(system, first, last)
     change = sum(mechanical(system, last)) - sum(mechanical(system, first))
     elastic = mechanical(system, last)[0][1]
     assert found.kinetic == pytest.approx(change[0] + 1e9 - elastic)

@@ -7,11 +7,16 @@ import pytest
 
 import railquake as rq
 from railquake.inputs.ground_motion import GroundMotion
-from railquake.physics import constant, march, state
-from railquake.physics.vehicle import kernel_order
+from railquake.march.events import detect_events, release_train
+from railquake.march.order import kernel_order
+from railquake.march.rows import constant, state
+from railquake.march.sprung import vehicle_energy
+from railquake.physics.derailment import FLANGE_CONTACT, UPLIFT
 
 NAMES = ("flange contact", "uplift", "onset", "flange over", "derailed", "overturned")
 STILL = GroundMotion("still", 0.01, np.zeros(3))
+PATCHES = slice(state.PATCH_HYSTERESIS, state.FORCE_Y)
+FORCES = slice(state.FORCE_Y, state.WHEELSET_FREE)  # on wheelset, track and pier
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +31,7 @@ def placed(system, shift=0.0, rise=0.0, roll=0.0, **rows):
     s[state.HEIGHT] -= rise
     s[state.ROLL_SIN], s[state.ROLL_COS] = math.sin(roll), math.cos(roll)
     for patch, depth in enumerate((1e-4, -1e-3, 1e-4, -1e-3)):
-        s[state.PATCH + patch * state.PATCH_ROWS + state.PATCH_PENETRATION] = depth
+        s[state.PATCH_PENETRATION + patch] = depth
     s[state.TIME] = 2.5
     for name, value in rows.items():
         s[getattr(state, name)] = value
@@ -35,11 +40,11 @@ def placed(system, shift=0.0, rise=0.0, roll=0.0, **rows):
 
 def lift(s, *patches):
     for patch in patches:
-        s[state.PATCH + patch * state.PATCH_ROWS + state.PATCH_PENETRATION] = -1e-4
+        s[state.PATCH_PENETRATION + patch] = -1e-4
 
 
 def holding(system, s):
-    march.watch(s, system.constants, 0)
+    detect_events(s, system.constants, 0)
     flags = int(s[state.FLAGS, 0])
     return [name for k, name in enumerate(NAMES) if flags >> k & 1]
 
@@ -54,9 +59,9 @@ def test_nothing_happens_to_a_train_at_rest(system):
 @pytest.mark.parametrize("patch", [1, 3])
 def test_flange_contact(system, patch):
     s = placed(system)
-    s[state.PATCH + patch * state.PATCH_ROWS + state.PATCH_PENETRATION] = 1e-6
+    s[state.PATCH_PENETRATION + patch] = 1e-6
     assert holding(system, s) == ["flange contact"]
-    assert s[state.FIRST_TIME + state.FLANGE_CONTACT, 0] == 2.5
+    assert s[state.FIRST_TIME + FLANGE_CONTACT, 0] == 2.5
 
 
 @pytest.mark.parametrize("patch", [0, 2])
@@ -64,7 +69,7 @@ def test_uplift_of_one_side(system, patch):
     s = placed(system)
     lift(s, patch)
     assert holding(system, s) == ["uplift"]
-    assert s[state.FIRST_TIME + state.UPLIFT, 0] == 2.5
+    assert s[state.FIRST_TIME + UPLIFT, 0] == 2.5
     assert s[state.LEAVING, 0] == 0.0
 
 
@@ -79,14 +84,13 @@ def test_uplifts_are_counted_and_their_end_noted(system):
         (6.0, False),
     ):
         now = placed(system)
-        patches = slice(state.PATCH, state.PATCHES_END)
         if up:
             lift(now, 0)
-        s[patches], s[state.TIME] = now[patches], time
-        march.watch(s, system.constants, 0)
+        s[PATCHES], s[state.TIME] = now[PATCHES], time
+        detect_events(s, system.constants, 0)
     assert s[state.UPLIFTS, 0] == 2.0
     assert s[state.UPLIFT_END, 0] == 5.0
-    assert s[state.FIRST_TIME + state.UPLIFT, 0] == 1.0
+    assert s[state.FIRST_TIME + UPLIFT, 0] == 1.0
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -158,7 +162,7 @@ def test_overturned_when_the_centre_of_gravity_is_outside_the_lower_contact(
     mass = system.vehicle.mass[0::3]
     # only the car moves: the whole car's centre by its share
     moved = side * (q[constant.RAIL_CENTRE, 0] + beyond)
-    lateral = state.VEHICLE + np.argsort(kernel_order(9))[0::3]
+    lateral = state.VEHICLE_X + np.argsort(kernel_order(9))[0::3]
     s[lateral, 0] = 0.3
     s[lateral[0], 0] += moved * mass.sum() / mass[0]
     assert ("overturned" in holding(system, s)) == over
@@ -179,13 +183,13 @@ def test_overturned_when_the_centre_of_gravity_is_outside_the_lower_contact(
 )
 def test_a_state_out_of_bounds_or_no_number_has_diverged(system, row, value):
     s = placed(system, **{row: value})
-    march.watch(s, system.constants, 0)
+    detect_events(s, system.constants, 0)
     assert s[state.DIVERGED, 0] == 1.0
     calm = placed(system, U=4.9, THETA2=4.9)
-    march.watch(calm, system.constants, 0)
+    detect_events(calm, system.constants, 0)
     assert calm[state.DIVERGED, 0] == 0.0
     once = placed(system, DIVERGED=1.0)
-    march.watch(once, system.constants, 0)
+    detect_events(once, system.constants, 0)
     assert once[state.DIVERGED, 0] == 1.0  # it does not recover
 
 
@@ -201,18 +205,18 @@ def test_a_train_that_has_left_gives_no_events(system):
 def test_first_times_are_kept(system):
     s = placed(system)
     lift(s, 2)
-    march.watch(s, system.constants, 0)
+    detect_events(s, system.constants, 0)
     s[state.TIME] = 3.5
-    march.watch(s, system.constants, 0)
-    assert s[state.FIRST_TIME + state.UPLIFT, 0] == 2.5
+    detect_events(s, system.constants, 0)
+    assert s[state.FIRST_TIME + UPLIFT, 0] == 2.5
 
 
 def moving(system):
     """A car in motion with springs stretched, about to leave."""
     drawn = np.random.default_rng(5)
     s = placed(system, shift=0.2, DASHPOT_POWER=5.0)
-    s[state.VEHICLE : state.VEHICLE + 45, 0] = drawn.normal(size=45)
-    s[state.FORCE_Y : state.FORCES_END] = 1.0
+    s[state.VEHICLE_X : state.VEHICLE_X + 45, 0] = drawn.normal(size=45)
+    s[FORCES] = 1.0
     s[state.HERTZ_ENERGY] = 7.0
     return s
 
@@ -221,32 +225,32 @@ def test_vehicle_energy_is_that_of_its_matrices(system):
     s = moving(system)
     order = kernel_order(9)
     x, v = np.empty(9), np.empty(9)
-    x[order] = s[state.VEHICLE : state.VEHICLE + 9, 0]
-    v[order] = s[state.VEHICLE + 9 : state.VEHICLE + 18, 0]
+    x[order] = s[state.VEHICLE_X : state.VEHICLE_X + 9, 0]
+    v[order] = s[state.VEHICLE_V : state.VEHICLE_V + 9, 0]
     matrices = system.vehicle
     expected = 0.5 * (x @ matrices.stiffness @ x + v @ (matrices.mass * v))
-    assert march.vehicle_energy(s, system.constants, 0) == pytest.approx(expected)
+    assert vehicle_energy(s, system.constants, 0) == pytest.approx(expected)
 
 
 def test_release_takes_the_train_out_with_its_energy_on_record(system):
     s = moving(system)
-    energy = march.vehicle_energy(s, system.constants, 0)
-    places = s[state.VEHICLE : state.VEHICLE + 9].copy()
-    march.watch(s, system.constants, 0)
+    energy = vehicle_energy(s, system.constants, 0)
+    places = s[state.VEHICLE_X : state.VEHICLE_X + 9].copy()
+    detect_events(s, system.constants, 0)
     assert s[state.LEAVING, 0] == 1.0
-    march.release(s, system.constants, 0)
+    release_train(s, system.constants, 0)
     assert s[state.VEHICLE_ENERGY, 0] == pytest.approx(energy)
     assert s[state.HERTZ_LEFT, 0] == 7.0
     assert s[state.ON_TRACK, 0] == 0.0
-    assert np.all(s[state.VEHICLE : state.VEHICLE + 9] == places)  # it stays where it was
-    assert not s[state.VEHICLE + 9 : state.VEHICLE + 36].any()  # and moves no more
+    assert np.all(s[state.VEHICLE_X : state.VEHICLE_X + 9] == places)  # it stays where it was
+    assert not s[state.VEHICLE_V : state.VEHICLE_STEP].any()  # and moves no more
     assert s[state.DASHPOT_POWER, 0] == 0.0
-    assert not s[state.FORCE_Y : state.FORCES_END].any()  # on wheelset, track and pier
+    assert not s[FORCES].any()
 
 
 def test_release_leaves_a_train_that_stays_as_it_is(system):
     s = moving(system)
     s[state.LEAVING] = 0.0
     before = s.copy()
-    march.release(s, system.constants, 0)
+    release_train(s, system.constants, 0)
     assert np.all(s == before)

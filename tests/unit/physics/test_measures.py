@@ -8,8 +8,9 @@ from scipy.signal import butter, lfilter, lfilter_zi
 
 import railquake as rq
 from jolts import pushed
-from railquake.physics import constant, march, state
-from railquake.physics.kernel import PYTHON
+from railquake.march import peaks
+from railquake.march.compiler import PYTHON
+from railquake.march.rows import constant, size, state
 
 DT = 2e-5
 
@@ -77,8 +78,8 @@ def test_filtered_forces_are_a_butterworth_of_the_frames_means(every_step, steps
     for name in ("lateral_force", "wheel_load_left", "wheel_load_right"):
         raw = every_step.channel(f"{name}_n")
         means = raw[1:].reshape(-1, steps).mean(axis=1)
-        row = {"lateral_force": 2, "wheel_load_left": 6, "wheel_load_right": 10}[name]
-        first = found.system.start[state.FILTER + row, 0]  # at rest, before the push
+        number = {"lateral_force": 0, "wheel_load_left": 1, "wheel_load_right": 2}[name]
+        first = found.system.start[state.FILTER_Y1 + number, 0]  # at rest, before the push
         expected, _ = lfilter(b, a, means, zi=lfilter_zi(b, a) * first)
         size = np.abs(raw).max()
         assert found.channel(f"{name}_filtered_n")[1:] == pytest.approx(
@@ -86,12 +87,17 @@ def test_filtered_forces_are_a_butterworth_of_the_frames_means(every_step, steps
         )
 
 
+BLOCKS = (state.FILTER_X1, state.FILTER_X2, state.FILTER_Y1, state.FILTER_Y2)
+FILTERS = np.array(BLOCKS) + np.arange(5)[:, None]  # a row for each filter
+COEFFICIENTS = slice(constant.FILTER_B0, constant.FILTER_A2 + 1)
+
+
 def frame_state():
     """State and constants for stages that need a frame's sums or the wheelset's place only."""
     system = pushed("to the right", DT)
     s, q = system.start.copy(), system.constants.copy()
-    s[state.FILTER : state.FILTERS_END] = 0.0
-    q[constant.FILTER_B0 : constant.FILTER_A2 + 1, 0] = (1.0, 0.0, 0.0, 0.0, 0.0)  # lets all pass
+    s[FILTERS] = 0.0
+    q[COEFFICIENTS, 0] = (1.0, 0.0, 0.0, 0.0, 0.0)  # lets all pass
     q[constant.STATIC_WHEEL_LOAD] = 100.0
     s[state.LOWEST_LOAD] = 100.0
     return s, q
@@ -115,7 +121,8 @@ def test_derailment_coefficient_is_lateral_over_vertical_where_a_wheel_bears(
 ):
     s, q = frame_state()
     s[SUMS, 0] = 4.0 * np.array([sum(lateral), *loads, *lateral])  # of a frame of four steps
-    march.filter_forces(s, q, 4.0, 0)
+    q[constant.FRAME_STEPS] = 4.0
+    peaks.filter_forces(s, q, 0)
     assert s[state.PEAK_DERAILMENT_COEFFICIENT, 0] == pytest.approx(expected)
     assert s[state.PEAK_LATERAL_FILTERED, 0] == pytest.approx(abs(sum(lateral)))
     assert s[state.LOWEST_LOAD, 0] == pytest.approx(min(loads))
@@ -126,7 +133,8 @@ def test_forces_of_a_train_that_has_left_count_no_more():
     s, q = frame_state()
     s[state.ON_TRACK] = 0.0
     s[SUMS, 0] = (50.0, 40.0, 60.0, 20.0, 30.0)
-    march.filter_forces(s, q, 1.0, 0)
+    q[constant.FRAME_STEPS] = 1.0
+    peaks.filter_forces(s, q, 0)
     assert s[state.PEAK_DERAILMENT_COEFFICIENT, 0] == s[state.PEAK_LATERAL_FILTERED, 0] == 0.0
     assert s[state.LOWEST_LOAD, 0] == 100.0
 
@@ -134,22 +142,26 @@ def test_forces_of_a_train_that_has_left_count_no_more():
 def test_a_filter_remembers_two_inputs_and_two_outputs():
     s, q = frame_state()
     coefficients = (0.2, 0.3, 0.1, -0.5, 0.25)
-    q[constant.FILTER_B0 : constant.FILTER_A2 + 1, 0] = coefficients
+    q[COEFFICIENTS, 0] = coefficients
     drawn = np.random.default_rng(3).normal(size=12)
-    found = [march.low_pass(s, q, 3, x, 0) for x in drawn]
+    found = []
+    for x in drawn:
+        s[SUMS[3]] = x
+        found.append(peaks.filtered(s, q, 3, 1.0, 0))
     assert found == pytest.approx(lfilter(coefficients[:3], (1.0, *coefficients[3:]), drawn))
-    assert not s[state.FILTER : state.FILTER + 12].any()  # the others were left alone
+    assert not s[FILTERS[[0, 1, 2, 4]]].any()  # the others were left alone
 
 
 def test_every_force_has_a_filter_of_its_own():
     """Y/Q and the lowest load from filtered forces, each with its own past."""
     s, q = frame_state()
     coefficients = (0.2, 0.3, 0.1, -0.5, 0.25)
-    q[constant.FILTER_B0 : constant.FILTER_A2 + 1, 0] = coefficients
+    q[COEFFICIENTS, 0] = coefficients
+    q[constant.FRAME_STEPS] = 2.0
     drawn = np.random.default_rng(11).uniform(30.0, 90.0, size=(8, 5))
     for sums in drawn:
         s[SUMS, 0] = 2.0 * sums
-        march.filter_forces(s, q, 2.0, 0)
+        peaks.filter_forces(s, q, 0)
     out = lfilter(coefficients[:3], (1.0, *coefficients[3:]), drawn, axis=0)
     loads, lateral = out[:, 1:3], out[:, 3:]
     bears = loads > 10.0  # a tenth of the static load
@@ -161,20 +173,20 @@ def test_every_force_has_a_filter_of_its_own():
 
 @pytest.mark.parametrize("bearing", range(16))
 def test_a_wheel_is_off_its_rail_when_neither_tread_nor_flange_bears(bearing):
-    s = np.zeros((state.VEHICLE, 1))
-    s[state.PATCH - 4 : state.PATCHES_END + 4] = 7.0  # neighbours that are none of its business
+    s = np.zeros((size.STATE_ROWS, 1))
+    # the neighbours' are none of its business
+    s[state.PATCH_HYSTERESIS - 4 : state.FORCE_Y + 4] = 7.0
     touches = [bool(bearing >> patch & 1) for patch in range(4)]
     for patch, touch in enumerate(touches):
-        row = state.PATCH + patch * state.PATCH_ROWS + state.PATCH_PENETRATION
-        s[row] = 1e-5 if touch else -1e-5
+        s[state.PATCH_PENETRATION + patch] = 1e-5 if touch else -1e-5
     expected = (float(not any(touches[:2])), float(not any(touches[2:])))
-    assert march.wheels_off(s, 0) == expected
+    assert peaks.wheels_off(s, 0) == expected
 
 
 def test_structure_runs_on_alone_after_the_train_has_left():
     system = pushed("to the right", DT)
     start = system.start.copy()
-    start[state.VEHICLE + 4] += 0.2  # the wheelset's y, beyond its shift's limit
+    start[state.VEHICLE_X + size.WHEELSET_Y] += 0.2  # the wheelset's y, beyond its shift's limit
     response = rq.simulate(replace(system, start=start), target=PYTHON)
     row = rq.assess(response)
     assert (row["status"], row["derailment_mode"]) == ("derailed", "slide-off right")

@@ -7,16 +7,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from railquake.physics import constant, march, state
-from railquake.physics.march import patch_forces
+from railquake.march.compiler import PYTHON, bind
+from railquake.march.contact import add_patch, add_wheels
+from railquake.march.rows import constant, size, state
+from railquake.march.slots import chosen
+from railquake.physics import patch
+from railquake.physics.patch import Contact, WheelMotion
+from railquake.physics.profiles import Patch
 
 K, CREEP, SPIN = 9e10, 6e10, 4e11  # of the order of the presets'
+LAWS = chosen({"creep law": "she", "restitution law": "hunt-crossley"})
+bound_forces = bind(patch.patch_forces, PYTHON, LAWS).call
+bear = bind(add_patch, PYTHON, LAWS).call
 CLOSED, OPEN = st.floats(1e-7, 3e-4), st.floats(-1e-2, 0.0)  # penetration, m
 
 
 @st.composite
 def patches(draw, penetration=CLOSED):
-    """Arguments of `patch_forces`: a touching wheel in any motion."""
+    """What `patch_forces` is given: a touching wheel in any motion."""
     psi = draw(st.floats(-0.1, 0.1))
     return {
         "penetration": draw(penetration),
@@ -37,6 +45,20 @@ def patches(draw, penetration=CLOSED):
         "friction": draw(st.sampled_from([0.0, 0.3])),
         "inverse_speed": draw(st.sampled_from([1.0, 1.0 / 22.0])),
     }
+
+
+def patch_forces(
+    penetration, slope, gap_psi, arm_z, stiffness, creep, spin, shift_v, height_v, roll_v,
+    roll_sin, roll_cos, hysteresis, alpha_r, onset_bound, friction, inverse_speed,
+):  # fmt: skip
+    """The forces, with the wheelset's centre at the height of the track's origin."""
+    return bound_forces(
+        penetration,
+        Patch(0.0 - penetration, slope, gap_psi, arm_z, stiffness, creep, spin),
+        WheelMotion(0.0, shift_v, height_v, roll_v, roll_sin, roll_cos),
+        hysteresis,
+        Contact(alpha_r, onset_bound, friction, inverse_speed),
+    )
 
 
 @given(patches())
@@ -100,8 +122,8 @@ def test_friction_opposes_the_sliding_and_spin_climbs_the_flange():
 @pytest.mark.parametrize("side", [0, 1])
 def test_patches_of_a_wheel_add_up_for_all_axles_in_the_tracks_axes(side):
     """Tread and flange at once: forces mirrored on the left, loads and powers summed."""
-    s = np.zeros((state.VEHICLE, 1))
-    q = np.zeros((constant.VEHICLE, 1))
+    s = np.zeros((size.STATE_ROWS, 1))
+    q = np.zeros((size.CONSTANT_ROWS, 1))
     s[[state.HEIGHT, state.SHIFT_V, state.HEIGHT_V, state.ROLL_V], 0] = (-0.39, 0.02, 0.03, -0.04)
     psi = 0.01
     s[[state.ROLL_SIN, state.ROLL_COS], 0] = math.sin(psi), math.cos(psi)
@@ -112,24 +134,24 @@ def test_patches_of_a_wheel_add_up_for_all_axles_in_the_tracks_axes(side):
     expected = np.zeros(7)
     for zone, (slope, gap_psi, sunk) in enumerate(((0.01, -0.87, 6e-5), (-0.9, -0.5, 4e-5))):
         gap, rail_z = -0.39 - sunk, 0.001 + 0.004 * zone
-        march.bear(s, q, side, zone, gap, slope, gap_psi, rail_z, K, CREEP, SPIN, 0)
+        bear(s, q, side, zone, Patch(gap, slope, gap_psi, rail_z, K, CREEP, SPIN), 0)
         one = patch_forces(
             sunk, slope, gap_psi, rail_z + 0.39, K, CREEP, SPIN, sign * 0.02, 0.03, sign * -0.04,
             sign * math.sin(psi), math.cos(psi), 0.0, 0.45, 0.1, 0.3, 1.0 / 22.0,
         )  # fmt: skip
         _, y, z, turning, *powers = one
         expected += 4.0 * np.array([sign * y, z, sign * turning, *powers])
-        row = state.PATCH + (2 * side + zone) * state.PATCH_ROWS
-        assert s[row + state.PATCH_PENETRATION, 0] == pytest.approx(sunk)
-        assert s[row + state.PATCH_HYSTERESIS, 0] == one[0] > 0.0
-    march.add_up(s, q, 0)
+        number = 2 * side + zone
+        assert s[state.PATCH_PENETRATION + number, 0] == pytest.approx(sunk)
+        assert s[state.PATCH_HYSTERESIS + number, 0] == one[0] > 0.0
+    add_wheels(s, q, 0)
     assert s[state.FORCE_Y : state.SPIN_POWER + 1, 0] == pytest.approx(expected, rel=1e-9)
     assert s[state.LOAD_LEFT + side, 0] == pytest.approx(-expected[1])
     assert s[state.LATERAL_LEFT + side, 0] == pytest.approx(-expected[0])
     assert s[state.LOAD_RIGHT - side, 0] == s[state.LATERAL_RIGHT - side, 0] == 0.0
     s[state.ON_TRACK] = 0.0  # a train that has left presses no more
-    march.bear(s, q, side, 0, -0.3901, 0.01, -0.87, 0.001, K, CREEP, SPIN, 0)
-    march.add_up(s, q, 0)
+    bear(s, q, side, 0, Patch(-0.3901, 0.01, -0.87, 0.001, K, CREEP, SPIN), 0)
+    add_wheels(s, q, 0)
     assert not s[state.FORCE_Y : state.SPIN_POWER + 1].any()
 
 

@@ -12,18 +12,17 @@ import railquake as rq
 from jolts import jolt
 from kalker import kalker_table
 from railquake.assembly.geometry import build_geometry
-from railquake.physics import contact, creep, newmark, pier
-from railquake.physics.profiles import (
+from railquake.physics import hertz, newmark, pier
+from railquake.physics.contact_table import (
     FIELDS,
     Axis,
     axis_cell,
-    axis_constants,
+    axis_cells,
     axis_nodes,
     fill_table,
-    rail_at,
-    zone_contact,
-    zone_extremum,
 )
+from railquake.physics.creep.kalker import kalker_coefficients
+from railquake.physics.profiles import rail_at, zone_contact, zone_extremum
 from railquake.physics.vehicle import fixed_wheelset_modes
 
 STEEL = (2e11, 0.27)  # of the preset
@@ -62,8 +61,8 @@ def ellipse(second, lateral, rolling):
 @given(st.floats(0.05, 60.0), st.floats(0.5, 3.0))
 def test_hertz_and_kalker_of_any_curvatures(second, lateral, rolling):
     """Johnson's formulas in the semi-axes' ratio, Kalker's table linear in it."""
-    table = contact.hertz_table(*STEEL)
-    found = contact.hertz_lookup(
+    table = hertz.hertz_table(*STEEL)
+    found = hertz.hertz_lookup(
         lateral, rolling, table.stiffness, table.area, table.creep, table.spin
     )
     # where two of Kalker's straight pieces meet between nodes of the package's table: 3e-4
@@ -72,20 +71,20 @@ def test_hertz_and_kalker_of_any_curvatures(second, lateral, rolling):
 
 def test_axes_of_the_ellipse_are_tabulated_the_right_way_round():
     """A = 4 B: the ellipse is longer along the rolling direction, a/b > 1; and the other way."""
-    table = contact.hertz_table(*STEEL)
+    table = hertz.hertz_table(*STEEL)
     for rolling, lateral, longer in ((1.0, 4.0, True), (4.0, 1.0, False)):
         angle = math.acos((rolling - lateral) / (rolling + lateral))
         at = round(angle / math.pi * (len(table.a_over_b) - 1))
         assert (table.a_over_b[at] > 1.0) == longer
-        m, n, _ = contact.hertz_coefficients(np.array([angle]))
+        m, n, _ = hertz.hertz_coefficients(np.array([angle]))
         assert table.a_over_b[at] == pytest.approx(m[0] / n[0], rel=2e-3)
-        assert contact.hertz_coefficients(angle)[0] == pytest.approx(m[0])  # a plain number too
+        assert hertz.hertz_coefficients(angle)[0] == pytest.approx(m[0])  # a plain number too
 
 
 @pytest.mark.parametrize(("end", "ratio"), [(0.0, 0.1), (math.pi, 10.0)])
 def test_nearly_line_contacts_keep_kalkers_last_column(end, ratio):
-    table = contact.hertz_table(*STEEL)
-    _, c22, c23 = creep.kalker_coefficients(np.array([ratio]), STEEL[1])
+    table = hertz.hertz_table(*STEEL)
+    _, c22, c23 = kalker_coefficients(np.array([ratio]), STEEL[1])
     shear = STEEL[0] / (2.0 * (1.0 + STEEL[1]))
     at = 0 if end == 0.0 else -1
     assert table.creep[at] == pytest.approx(shear * c22[0], rel=1e-9)
@@ -96,8 +95,8 @@ def test_nearly_line_contacts_keep_kalkers_last_column(end, ratio):
 @pytest.mark.parametrize("ratio", [12.0, 1e3])
 def test_kalkers_table_is_held_at_its_ends(ratio):
     for beyond, last in ((ratio, 10.0), (1.0 / ratio, 0.1)):
-        assert np.concatenate(creep.kalker_coefficients(beyond * np.ones(1), 0.3)) == pytest.approx(
-            np.concatenate(creep.kalker_coefficients(last * np.ones(1), 0.3))
+        assert np.concatenate(kalker_coefficients(beyond * np.ones(1), 0.3)) == pytest.approx(
+            np.concatenate(kalker_coefficients(last * np.ones(1), 0.3))
         )
 
 
@@ -172,7 +171,7 @@ AXIS = Axis(fine=0.4, fine_step=0.1, coarse_step=0.3, end=1.0)
 def test_nodes_of_an_axis_are_coarse_fine_coarse():
     expected = [-1.0, -0.7, -0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4, 0.7, 1.0]
     assert axis_nodes(AXIS) == pytest.approx(expected, abs=1e-12)
-    assert axis_constants(AXIS) == pytest.approx((0.4, 1.0, 10.0, 1.0 / 0.3, 2.0, 8.0))
+    assert axis_cells(AXIS) == pytest.approx((0.4, 1.0, 10.0, 1.0 / 0.3, 2.0, 8.0))
 
 
 @pytest.mark.parametrize(
@@ -180,7 +179,7 @@ def test_nodes_of_an_axis_are_coarse_fine_coarse():
 )
 def test_a_place_lies_in_its_cell(x):
     nodes = axis_nodes(AXIS)
-    cell, place, rate = axis_cell(x, *axis_constants(AXIS))
+    cell, place, rate = axis_cell(x, axis_cells(AXIS))
     k = int(cell)
     assert 0 <= k <= len(nodes) - 2
     assert 0.0 <= place <= 1.0
@@ -190,7 +189,7 @@ def test_a_place_lies_in_its_cell(x):
 
 @pytest.mark.parametrize(("x", "end"), [(-7.0, -1.0), (7.0, 1.0)])
 def test_beyond_the_axis_a_place_is_held_at_its_end(x, end):
-    assert axis_cell(x, *axis_constants(AXIS)) == axis_cell(end, *axis_constants(AXIS))
+    assert axis_cell(x, axis_cells(AXIS)) == axis_cell(end, axis_cells(AXIS))
 
 
 def test_table_is_filled_row_by_row_with_tread_and_flange(geometry):

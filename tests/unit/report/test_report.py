@@ -86,6 +86,13 @@ def test_the_summary_comes_first_and_answers_three_questions_with_numbers(report
     assert summary.count('class="verdict') == 12
 
 
+def test_another_claim_s_file_is_enough_for_the_report(folder, another_claim):
+    another_claim()
+    text = write_report(folder).read_text(encoding="utf-8")
+    assert text.count('class="verdict') == 13
+    assert "A yielding pier makes derailment less likely." in text
+
+
 def test_trust_shows_the_step_s_measured_error_versions_and_hashes(report):
     text = report.read_text(encoding="utf-8")
     trust = text[text.index('<section id="trust">') :]

@@ -19,6 +19,7 @@ from railquake.errors import InputError
 from railquake.inputs.profile.shape import Profile, ProfileKind
 
 _FloatArray = NDArray[np.float64]
+_Header = dict[str, tuple[str, int]]  # by key: what is written, and the line that it stands on
 
 MIN_POINTS = 10
 MAX_POINTS = 20_000
@@ -111,7 +112,18 @@ def _read_text(path: Path) -> str:
 
 
 def _parse_simpack(path: Path, text: str, kind: ProfileKind) -> _Table:
-    header: dict[str, tuple[str, int]] = {}
+    header, rows, lines = _simpack_lines(path, text)
+    _check_simpack_kind(path, header, kind)
+    _check_simpack_keys(path, header)
+    points = np.array(rows, dtype=np.float64).reshape(-1, 2) / _simpack_unit(path, header)
+    y = -points[:, 0] if _header_number(path, header, "mirror.y") == 1.0 else points[:, 0]
+    z = -points[:, 1] if _header_number(path, header, "mirror.z") == 1.0 else points[:, 1]
+    return _Table(y, z, np.array(lines, dtype=np.int64))
+
+
+def _simpack_lines(path: Path, text: str) -> tuple[_Header, list[tuple[float, float]], list[int]]:
+    """Header, points as they are written, and the line of each point."""
+    header: _Header = {}
     rows: list[tuple[float, float]] = []
     lines: list[int] = []
     state = "before"
@@ -128,15 +140,7 @@ def _parse_simpack(path: Path, text: str, kind: ProfileKind) -> _Table:
                 raise InputError(f"{path}, line {number}: point.end without point.begin")
             state = "after"
         elif state == "inside":
-            if line in ("spline.end", "header.begin"):
-                raise InputError(f"{path}, line {number}: no point.end; the table is cut short")
-            fields = line.split()
-            if len(fields) not in (2, 3):
-                raise InputError(
-                    f"{path}, line {number}: {len(fields)} values; a point is y, z and perhaps a "
-                    "weight"
-                )
-            rows.append((_number(path, number, fields[0]), _number(path, number, fields[1])))
+            rows.append(_simpack_point(path, number, line))
             lines.append(number)
         elif "=" in line:
             key, value = (part.strip() for part in line.split("=", 1))
@@ -145,13 +149,32 @@ def _parse_simpack(path: Path, text: str, kind: ProfileKind) -> _Table:
         raise InputError(f"{path}: no point.begin, so no table of points; is it a SIMPACK profile?")
     if state == "inside":
         raise InputError(f"{path}: no point.end; the table is cut short")
+    return header, rows, lines
 
+
+def _simpack_point(path: Path, number: int, line: str) -> tuple[float, float]:
+    if line in ("spline.end", "header.begin"):
+        raise InputError(f"{path}, line {number}: no point.end; the table is cut short")
+    fields = line.split()
+    if len(fields) not in (2, 3):
+        raise InputError(
+            f"{path}, line {number}: {len(fields)} values; a point is y, z and perhaps a weight"
+        )
+    return _number(path, number, fields[0]), _number(path, number, fields[1])
+
+
+def _check_simpack_kind(path: Path, header: _Header, kind: ProfileKind) -> None:
+    """The header's type counts, and the file's name where it has none."""
     stated_type = _header_number(path, header, "type")
     expected = "wheel" if path.suffix.lower() == ".prw" else "rail"
     if stated_type is not None:
         expected = "wheel" if stated_type == 1.0 else "rail"
     if expected != kind:
         raise InputError(f"{path}: holds a {expected} profile where a {kind} is needed")
+
+
+def _check_simpack_keys(path: Path, header: _Header) -> None:
+    """Refuse what would move or cut the points."""
     for key in ("shift.y", "shift.z", "rotate"):
         if _header_number(path, header, key):
             raise InputError(
@@ -166,6 +189,10 @@ def _parse_simpack(path: Path, text: str, kind: ProfileKind) -> _Table:
                 f"{path}, line {header[f'bound.{axis}.min'][1]}: bound.{axis} cuts the profile, "
                 "which is not supported; remove the points outside and set min above max"
             )
+
+
+def _simpack_unit(path: Path, header: _Header) -> float:
+    """Lengths of the file per metre."""
     units = _header_number(path, header, "units.len.f")
     if units is None:
         raise InputError(
@@ -176,13 +203,10 @@ def _parse_simpack(path: Path, text: str, kind: ProfileKind) -> _Table:
             f"{path}, line {header['units.len.f'][1]}: units.len.f is {units:g}; "
             "it must be positive"
         )
-    points = np.array(rows, dtype=np.float64).reshape(-1, 2) / units
-    y = -points[:, 0] if _header_number(path, header, "mirror.y") == 1.0 else points[:, 0]
-    z = -points[:, 1] if _header_number(path, header, "mirror.z") == 1.0 else points[:, 1]
-    return _Table(y, z, np.array(lines, dtype=np.int64))
+    return units
 
 
-def _header_number(path: Path, header: dict[str, tuple[str, int]], key: str) -> float | None:
+def _header_number(path: Path, header: _Header, key: str) -> float | None:
     if key not in header:
         return None
     value, number = header[key]

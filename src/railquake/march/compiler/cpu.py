@@ -82,6 +82,7 @@ exit:
 def _loop_in_assembly() -> str:
     """A loop over an array of doubles as the compiler translates it for its processor."""
     import llvmlite.binding
+    import numba  # noqa: F401  whole before its parts: another thread may be importing it as well
     from numba.core.compiler_lock import global_compiler_lock
     from numba.core.registry import cpu_target
 
@@ -115,9 +116,9 @@ def own_memory(rows: int, lanes: int) -> Law:
 
     It lies on the stack: its row stride is known, and that nothing else points there.
     """
+    import numba  # whole before its parts: another thread may be importing it as well
     from llvmlite import ir
     from numba.core import types
-    from numba.extending import intrinsic
 
     kind = types.Array(types.float64, 2, "C")
 
@@ -140,7 +141,7 @@ def own_memory(rows: int, lanes: int) -> Law:
 
         return kind(), generate
 
-    law: Law = intrinsic(typed)
+    law: Law = numba.extending.intrinsic(typed)
     return law
 
 

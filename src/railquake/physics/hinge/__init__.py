@@ -98,6 +98,8 @@ class HingeLaw:
         ``state -> state`` of a hinge that stands still.
     damage : callable, optional
         ``(state, parameters) -> damage index``.
+    inputs : type, optional
+        Model of the law's own table in a case, for a law from outside the package.
     """
 
     name: str
@@ -111,6 +113,7 @@ class HingeLaw:
     abreast: Mapping[Law, Law] = field(default_factory=dict)
     standing: Callable[[Any], Any] = standing
     damage: Callable[[Any, Any], float] = known_damage
+    inputs: type | None = None
 
 
 def advance(x: float, state: Any, parameters: Any, free_step: float, flexibility: float) -> Answer:
