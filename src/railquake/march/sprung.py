@@ -66,14 +66,16 @@ def work_on_bodies(S: Array, Q: Array, lane: int) -> None:
     S[state.DASHPOT_POWER, lane] = 0.0
 
 
-def accelerate_lateral(S: Array, Q: Array, i: int, lane: int) -> None:
-    """Row ``i`` of Eq. 1 in the first block, contact forces left out."""
-    accelerate(S, Q, i, 0, size.LATERAL, lane)
+def accelerate_lateral(S: Array, Q: Array, lane: int) -> None:
+    """The rows of Eq. 1 in the first block, contact forces left out."""
+    for i in range(size.LATERAL):
+        accelerate(S, Q, i, 0, size.LATERAL, lane)
 
 
-def accelerate_vertical(S: Array, Q: Array, i: int, lane: int) -> None:
-    """Row ``i`` of Eq. 1 in the second block, contact forces left out."""
-    accelerate(S, Q, i, size.LATERAL, size.DOFS, lane)
+def accelerate_vertical(S: Array, Q: Array, lane: int) -> None:
+    """The rows of Eq. 1 in the second block, contact forces left out."""
+    for i in range(size.LATERAL, size.DOFS):
+        accelerate(S, Q, i, size.LATERAL, size.DOFS, lane)
 
 
 def accelerate(S: Array, Q: Array, i: int, first: int, last: int, lane: int) -> None:

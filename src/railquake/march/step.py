@@ -150,11 +150,9 @@ def accelerate_bodies(S: Array, Q: Array, lanes: int) -> None:
     for lane in range(lanes):
         work_on_bodies(S, Q, lane)
     for lane in range(lanes):
-        for i in range(size.LATERAL):
-            accelerate_lateral(S, Q, i, lane)
+        accelerate_lateral(S, Q, lane)
     for lane in range(lanes):
-        for i in range(size.LATERAL, size.DOFS):
-            accelerate_vertical(S, Q, i, lane)
+        accelerate_vertical(S, Q, lane)
     for lane in range(lanes):
         lose_to_dashpots(S, Q, lane)
     for lane in range(lanes):
