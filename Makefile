@@ -7,12 +7,12 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input
 SHELL  := /bin/bash
 
-.PHONY: help demo test lint format types layers docs bench bench-gpu validate mutants constraints clean
+.PHONY: help demo test lint format types layers docs bench bench-gpu validate mutants pins constraints clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
-	@echo "make demo | test | lint | format | types | layers | docs | bench | bench-gpu | validate | mutants | clean"
+	@echo "make demo | test | lint | format | types | layers | docs | bench | bench-gpu | validate | mutants | pins | clean"
 
 demo: $(VENV)/.ready-run
 	$(BIN)/railquake demo --out $(DEMO)
@@ -55,6 +55,10 @@ validate: $(VENV)/.ready-fem
 EVERY ?= 1
 mutants: $(VENV)/.ready-dev
 	$(BIN)/python tools/mutants.py --every $(EVERY)
+
+# Every pinned number, old against new; minutes.
+pins: $(VENV)/.ready-dev
+	$(BIN)/python tools/pins.py --records $(RECORDS)
 
 # One stamp per set of packages.  Each holds when the interpreter and both lists are older than it.
 $(VENV)/.ready-run:   EXTRAS :=
