@@ -129,16 +129,10 @@ def own_memory(rows: int, lanes: int) -> Law:
                 place.align = 64
             array = context.make_array(kind)(context, builder)
             word = context.get_value_type(types.intp)
-            count = word(rows)
-            if lanes == 1:
-                # One scenario's loops over rows are to be unrolled.  Who does not know the number
-                # of rows cannot vectorise them, which would need gathers: a quarter slower.
-                same = ir.FunctionType(word, [word])
-                count = builder.asm(same, "", "=r,0", [count], side_effect=False)
             context.populate_array(
                 array,
                 data=builder.bitcast(place, ir.DoubleType().as_pointer()),
-                shape=[count, word(lanes)],
+                shape=[word(rows), word(lanes)],
                 strides=[word(8 * lanes), word(8)],
                 itemsize=word(8),
                 meminfo=None,
