@@ -11,7 +11,7 @@ from railquake.assembly.geometry import ROLL_AXIS, SHIFT_AXIS
 from railquake.errors import InputError
 from railquake.inputs.profile import flange_tip
 from railquake.march.order import kernel_order
-from railquake.march.packed import in_blocks, unpacked, upper_triangle
+from railquake.march.packed import unpacked, upper_triangle
 from railquake.physics import newmark
 from railquake.physics.contact_table import axis_cells
 from railquake.physics.derailment import ROLL_LIMIT, SHIFT_LIMIT
@@ -69,11 +69,12 @@ def static_wheel_load(vehicle: VehicleMatrices) -> float:
 def _fill_vehicle(q: Array, vehicle: VehicleMatrices, layout: Layout) -> None:
     constant, blocks = layout.constant, layout.constant_blocks
     order = kernel_order(len(vehicle.mass))
+    upper = upper_triangle(len(order))
     q[constant.GRAVITY] = GRAVITY
     q[blocks["BODY_MASS"]] = vehicle.mass[0::3]
     q[blocks["INVERSE_MASS"]] = 1.0 / vehicle.mass[order]
-    q[blocks["STIFFNESS"]] = in_blocks(vehicle.stiffness[np.ix_(order, order)], vehicle.block)
-    q[blocks["DAMPING"]] = in_blocks(vehicle.damping[np.ix_(order, order)], vehicle.block)
+    q[blocks["STIFFNESS"]] = vehicle.stiffness[np.ix_(order, order)][upper]
+    q[blocks["DAMPING"]] = vehicle.damping[np.ix_(order, order)][upper]
 
 
 def _fill_wheelrail(q: Array, wheelrail: WheelRail, speed: float, layout: Layout) -> None:

@@ -1,11 +1,11 @@
-"""Matrices in rows: the structure's as upper triangles, the vehicle's as two square blocks."""
+"""Symmetric matrices kept as the rows of their upper triangles."""
 
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-__all__ = ["from_blocks", "in_blocks", "packed", "unpacked", "upper_triangle"]
+__all__ = ["packed", "unpacked", "upper_triangle"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -29,22 +29,3 @@ def unpacked(entries: Array) -> Array:
 def upper_triangle(n: int) -> tuple[Any, Any]:
     """Rows and columns of the entries of a `packed` matrix."""
     return np.triu_indices(n)
-
-
-def in_blocks(matrix: Array, first: int) -> Array:
-    """Entries of the two blocks on the diagonal, row by row: the first has ``first`` rows.
-
-    What couples them is zero; see `order.lateral_block`.
-    """
-    entries: Array = np.concatenate(
-        [matrix[:first, :first].ravel(), matrix[first:, first:].ravel()]
-    )
-    return entries
-
-
-def from_blocks(entries: Array, first: int, n: int) -> Array:
-    """Matrix of n rows from its blocks' entries; see `in_blocks`."""
-    matrix = np.zeros((n, n))
-    matrix[:first, :first] = entries[: first * first].reshape(first, first)
-    matrix[first:, first:] = entries[first * first :].reshape(n - first, n - first)
-    return matrix

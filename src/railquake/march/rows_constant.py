@@ -94,8 +94,8 @@ _MEASURES = (
 _VEHICLE = (
     row("BODY_MASS", "kg", "of each body", rows="BODIES"),
     row("INVERSE_MASS", "1/kg or 1/(kg m2)", "of each degree of freedom", rows="DOFS"),
-    row("STIFFNESS", "N/m, N or N m", "K_v, two square blocks", rows="VEHICLE_ENTRIES"),
-    row("DAMPING", "N s/m, N s or N m s", "C_v, two square blocks", rows="VEHICLE_ENTRIES"),
+    row("STIFFNESS", "N/m, N or N m", "K_v", rows="VEHICLE_ENTRIES"),
+    row("DAMPING", "N s/m, N s or N m s", "C_v", rows="VEHICLE_ENTRIES"),
 )
 
 CONSTANT_ROWS: tuple[Row, ...] = (*_TIME, *_STRUCTURE, *_CONTACT, *_MEASURES, *_VEHICLE)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from railquake.march.packed import packed
 from railquake.march.rows import constant, size, state
 from railquake.physics.energy import kinetic_and_elastic
 from railquake.physics.vehicle import free_acceleration
@@ -65,33 +66,24 @@ def work_on_bodies(S: Array, Q: Array, lane: int) -> None:
     S[state.DASHPOT_POWER, lane] = 0.0
 
 
-def accelerate_lateral(S: Array, Q: Array, lane: int) -> None:
-    """The rows of Eq. 1 in the first block, contact forces left out."""
-    for i in range(size.LATERAL):
-        elastic = 0.0
-        viscous = 0.0
-        for j in range(size.LATERAL):
-            entry = i * size.LATERAL + j
-            elastic += Q[constant.STIFFNESS + entry, lane] * S[state.VEHICLE_X + j, lane]
-            viscous += Q[constant.DAMPING + entry, lane] * S[state.VEHICLE_V + j, lane]
-        accelerate(S, Q, i, elastic, viscous, lane)
+def accelerate_lateral(S: Array, Q: Array, i: int, lane: int) -> None:
+    """Row ``i`` of Eq. 1 in the first block, contact forces left out."""
+    accelerate(S, Q, i, 0, size.LATERAL, lane)
 
 
-def accelerate_vertical(S: Array, Q: Array, lane: int) -> None:
-    """The rows of Eq. 1 in the second block, contact forces left out."""
-    for i in range(size.VERTICAL):
-        elastic = 0.0
-        viscous = 0.0
-        for j in range(size.VERTICAL):
-            entry = size.LATERAL * size.LATERAL + i * size.VERTICAL + j
-            k = size.LATERAL + j
-            elastic += Q[constant.STIFFNESS + entry, lane] * S[state.VEHICLE_X + k, lane]
-            viscous += Q[constant.DAMPING + entry, lane] * S[state.VEHICLE_V + k, lane]
-        accelerate(S, Q, size.LATERAL + i, elastic, viscous, lane)
+def accelerate_vertical(S: Array, Q: Array, i: int, lane: int) -> None:
+    """Row ``i`` of Eq. 1 in the second block, contact forces left out."""
+    accelerate(S, Q, i, size.LATERAL, size.DOFS, lane)
 
 
-def accelerate(S: Array, Q: Array, i: int, elastic: float, viscous: float, lane: int) -> None:
-    """Row ``i`` of Eq. 1 under the forces of its springs and dashpots."""
+def accelerate(S: Array, Q: Array, i: int, first: int, last: int, lane: int) -> None:
+    """Row ``i`` of Eq. 1, coupled to ``first <= j < last``, contact forces left out."""
+    elastic = 0.0
+    viscous = 0.0
+    for j in range(first, last):
+        entry = packed(i, j, size.DOFS)
+        elastic += Q[constant.STIFFNESS + entry, lane] * S[state.VEHICLE_X + j, lane]
+        viscous += Q[constant.DAMPING + entry, lane] * S[state.VEHICLE_V + j, lane]
     is_y = 1.0 if i < 2 * size.BODIES and (i & 1) == 0 else 0.0
     is_z = 1.0 if i >= 2 * size.BODIES else 0.0
     S[state.DASHPOT_POWER, lane] += viscous * S[state.VEHICLE_V + i, lane]
@@ -119,10 +111,9 @@ def vehicle_energy(S: Array, Q: Array, lane: int) -> float:
     energy = 0.0
     for i in range(size.DOFS):
         force = 0.0
-        first, last = (0, size.LATERAL) if i < size.LATERAL else (size.LATERAL, size.DOFS)
-        row = constant.STIFFNESS + first * first + (i - first) * (last - first)
-        for j in range(first, last):
-            force += Q[row + j - first, lane] * S[state.VEHICLE_X + j, lane]
+        for j in range(size.DOFS):
+            entry = constant.STIFFNESS + packed(i, j, size.DOFS)
+            force += Q[entry, lane] * S[state.VEHICLE_X + j, lane]
         energy += kinetic_and_elastic(
             S[state.VEHICLE_X + i, lane],
             S[state.VEHICLE_V + i, lane],

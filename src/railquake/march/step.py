@@ -150,9 +150,11 @@ def accelerate_bodies(S: Array, Q: Array, lanes: int) -> None:
     for lane in range(lanes):
         work_on_bodies(S, Q, lane)
     for lane in range(lanes):
-        accelerate_lateral(S, Q, lane)
+        for i in range(size.LATERAL):
+            accelerate_lateral(S, Q, i, lane)
     for lane in range(lanes):
-        accelerate_vertical(S, Q, lane)
+        for i in range(size.LATERAL, size.DOFS):
+            accelerate_vertical(S, Q, i, lane)
     for lane in range(lanes):
         lose_to_dashpots(S, Q, lane)
     for lane in range(lanes):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.march.packed import from_blocks
+from railquake.march.packed import unpacked
 from railquake.physics.energy import EnergyAudit, Works, contact_residual, whole_residual
 
 if TYPE_CHECKING:
@@ -28,9 +28,7 @@ def audit(system: System, end: Array) -> EnergyAudit:
     state, blocks = system.layout.state, system.layout.state_blocks
     constants = system.layout.constant_blocks
     first, last, q = system.start[:, 0], end[:, 0], system.constants[:, 0]
-    suspension = from_blocks(
-        q[constants["STIFFNESS"]], system.layout.size.LATERAL, system.layout.size.DOFS
-    )
+    suspension = unpacked(q[constants["STIFFNESS"]])
     inverse_mass = q[constants["INVERSE_MASS"]]
     structure = system.structure
 
