@@ -54,6 +54,8 @@ def write_reference(app):
     pages = {
         "case-file.md": generated.case_file(),
         "presets.md": generated.presets(),
+        "rows.md": generated.rows(),
+        "slots.md": generated.slots(),
         "channels.md": generated.channels(),
         **{f"measures-{kind.name.lower()}.md": generated.measures(kind) for kind in Kind},
         "case.schema.json": json.dumps(generated.schema(), indent=2) + "\n",

@@ -1,6 +1,11 @@
-"""Reference pages made from the input models and presets themselves, so that they cannot drift."""
+"""Reference pages made from what they describe, so that they cannot drift.
 
+Input models, presets, measures, the rows of state and constants, the slots of the march.
+"""
+
+import sys
 import typing
+from types import SimpleNamespace
 
 from pydantic_core import PydanticUndefined
 
@@ -12,7 +17,7 @@ from railquake.inputs.presets import list_presets
 from railquake.inputs.schema import json_schema as schema
 from railquake.inputs.units import DIMENSIONS, UNIT_DEFINITIONS, Quantity
 
-__all__ = ["case_file", "channels", "measures", "presets", "schema"]
+__all__ = ["case_file", "channels", "measures", "presets", "rows", "schema", "slots"]
 
 # What the page adds to the title and the words of some kinds of support.
 KINDS_OF_SUPPORT = {
@@ -37,12 +42,18 @@ def supports():
                 yield f"[support.{key}]", table, TABLES_OF_SUPPORTS.get(key, "")
 
 
+def parts_of_vehicles():
+    """The sections of what a vehicle has several of, each by its name."""
+    for key in marked(vehicle.Vehicle, ByName):
+        field = vehicle.Vehicle.model_fields[key]
+        for part in models_in(field.annotation):
+            yield f"[vehicle.{key}.NAME]", part, f"{field.description}, one table for each."
+
+
 # Where each model stands in a case file, and what the page says of it.
 SECTIONS = (
     ("[vehicle]", vehicle.Vehicle, "`preset` is a built-in name or a file; keys beside it win."),
-    ("[vehicle.bodies.NAME]", vehicle.Body, "One table for each rigid body."),
-    ("[vehicle.springs.NAME]", vehicle.Spring, "Between points of two bodies."),
-    ("[vehicle.dashpots.NAME]", vehicle.Dashpot, "Between points of two bodies."),
+    *parts_of_vehicles(),
     *supports(),
     (
         "[wheelrail]",
@@ -199,11 +210,12 @@ def presets():
 
 def channels():
     """Every channel of a history."""
+    from railquake.march.rows import USUAL
     from railquake.run.response import channels as known
 
-    rows = [
-        (f"`{name}`", unit, text) for name, _, unit, text in known(("car", "bogie", "wheelset"))
-    ]
+    bodies = ("car", "bogie", "wheelset")
+    usual = SimpleNamespace(layout=USUAL, vehicle=SimpleNamespace(bodies=bodies))
+    rows = [(f"`{found.name}`", found.unit, found.meaning) for found in known(usual)]
     return table(("channel", "unit", "what"), rows)
 
 
@@ -216,3 +228,135 @@ def measures(kind):
         for m in of_kind(kind)
     ]
     return table(("key", "unit", "name", "what"), rows)
+
+
+def row_lines(declared):
+    """Lines of a table of rows: each declaration, and below a block its parts."""
+    from railquake.measures import printed
+
+    for row in declared:
+        count = f"`{row.rows}`" if isinstance(row.rows, str) else str(row.rows)
+        train = ("train's" if row.train else "", "leaves" if row.released else "")
+        by_itself = row.parts and row.parts[0].name == row.name
+        channel = f"`{row.parts[0].channel}`" if by_itself and row.parts[0].channel else ""
+        said = ", ".join(filter(None, train))
+        yield f"`{row.name}`", count, printed(row.unit), row.meaning, channel, said
+        for part in () if by_itself else row.parts:
+            channel = f"`{part.channel}`" if part.channel else ""
+            yield f"... `{part.name}`", "", printed(part.unit), part.meaning, channel, ""
+
+
+def rows():
+    """Every row of state and constants."""
+    from railquake.laws import HINGE_LAWS
+    from railquake.march.rows import USUAL, hinge_parts
+    from railquake.march.rows_constant import CONSTANT_GROUPS
+    from railquake.march.rows_state import STATE_GROUPS
+
+    head = ("row", "rows", "unit", "meaning", "history", "train")
+    size = USUAL.size
+    lines = [
+        "# Rows",
+        "",
+        "All that a run keeps: the state `S[row, lane]` and the constants `Q[row, lane]`. A lane",
+        "is a scenario. This page is made from the declarations: `march/rows_state.py`,",
+        "`march/rows_constant.py`, the measures that have a row of their own, and the fields of",
+        "the hinge laws' states and parameters.",
+        "",
+        "- *rows*: how many; a name is a size of the run, such as `DOFS`, three for each body. The",
+        "  parts of a block that have names of their own stand below it.",
+        "- *history*: the channel that shows it, see [histories](../measures.md#histories).",
+        '- *train*: "train\'s": its channel is NaN once the train has left; "leaves": it is set to',
+        "  zero then.",
+        "",
+        f"A car of three bodies on a pier with the Bouc-Wen hinge has {size.STATE_ROWS} rows of",
+        f"state and {size.CONSTANT_ROWS} of constants.",
+        "",
+        "```python",
+        "system = rq.assemble(case)",
+        "state = system.layout.state  # numbers of the rows of this run",
+        "system.start[state.LOAD_LEFT, 0]  # N",
+        'system.layout.state_blocks["VEHICLE_X"]  # a slice',
+        "```",
+        "",
+    ]
+    for title, groups, fields, columns in (
+        ("State", STATE_GROUPS, lambda law: type(law.virgin), 6),
+        ("Constants", CONSTANT_GROUPS, lambda law: law.parameter_fields, 4),
+    ):
+        lines += [f"## {title}", ""]
+        laws = {
+            f"hinge law {name}": (hinge_parts("HINGE", fields(HINGE_LAWS[name])),)
+            for name in HINGE_LAWS.built_in()
+        }
+        for name, declared in {**groups, **laws}.items():
+            shown = [line[:columns] for line in row_lines(declared) if line[1] != "0"]
+            # a heading of its own: two groups may have one name
+            lines += [f"### {title}: {name}", ""]
+            lines += [table(head[:columns], shown)] if shown else ["None.", ""]
+    return "\n".join(lines)
+
+
+def reference(function):
+    """A function's name, linked where the reference has it."""
+    name = f"{function.__module__}.{function.__name__}"
+    known = function.__name__ in getattr(sys.modules.get(function.__module__), "__all__", ())
+    shown = name.removeprefix("railquake.")
+    return f"{{py:func}}`{shown} <{name}>`" if known else f"`{shown}`"
+
+
+def summary(function):
+    """First line of a docstring, without what is said of the slot itself."""
+    first = (function.__doc__ or "").strip().splitlines()[0]
+    return first.partition(": ")[2] if first.startswith("Slot of ") else first
+
+
+def slots():
+    """Every slot of the march, and what may stand there."""
+    from railquake.laws import HINGE_LAWS
+    from railquake.march.slots import SLOTS
+
+    lines = [
+        "# Slots",
+        "",
+        "What may be swapped. The march and the physics call a slot by its neutral name, which by",
+        "itself only raises `NotImplementedError`; [`bind`](../theory/kernel.md) puts what was",
+        "chosen in its place. This page is made from `SLOTS` in {py:mod}`railquake.march.slots`.",
+        "",
+        table(
+            ("slot", "decided by", "what may stand there"),
+            [
+                (slot.name, slot.decided_by, ", ".join(f"`{name}`" for name in slot.names()))
+                for slot in SLOTS
+            ],
+        ),
+        "Laws from outside the package join those of creep, restitution and hinge by",
+        "{py:meth}`Family.add <railquake.laws.Family.add>`; `examples/own_laws.py` has two.",
+        "",
+    ]
+    for slot in SLOTS:
+        title = f"{slot.name[0].upper()}{slot.name[1:]}"
+        lines += [f"## {title}", "", f"Decided by {slot.decided_by}.", ""]
+        neutral = [(reference(function), summary(function)) for function in slot.functions]
+        lines += [table(("neutral name", "what it does"), neutral)]
+        chosen = [
+            (f"`{name}`", reference(law), summary(law), slot.source(name))
+            for name in slot.names()
+            for law in slot.laws(name).values()
+            if law.__doc__  # those made to read and write rows have nothing to say
+        ]
+        lines += [table(("choice", "what stands there", "which", "source"), chosen)]
+        if slot.name != "hinge law":
+            continue
+        lines += ["`solver.hinge_solve`, and that many run abreast, change it further:", ""]
+        further = [
+            (f"`{name}`", when, reference(instead))
+            for name in slot.names()
+            for when, instead in (
+                ("linearised", HINGE_LAWS[name].linearised),
+                *(("abreast", law) for law in HINGE_LAWS[name].abreast.values()),
+            )
+            if instead is not None
+        ]
+        lines += [table(("law", "where", "what stands there instead"), further)]
+    return "\n".join(lines)

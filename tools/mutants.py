@@ -1,22 +1,25 @@
-"""Mutation testing of the physics: whether the tests are able to fail.
+"""Mutation testing of physics and march: whether the tests are able to fail.
 
-Every function of ``railquake.physics`` is changed in one place at a time, by the operators of
-mutmut, and the quick tests that call it are run until one fails.  mutmut's own runner cannot be
-used: it puts a decorator around each function, and `railquake.physics.kernel` binds functions by
-their code.  Here the function's code itself is exchanged, in a forked process for each mutant.
+Every law of ``railquake.physics`` and every stage of ``railquake.march`` is changed in one place at
+a time, by the operators of mutmut, and the quick tests that call it are run until one fails.
+mutmut's own runner cannot be used: it puts a decorator around each function, and
+`railquake.march.compiler.bind` binds functions by their code.  Here the code itself is exchanged,
+in a forked process for each mutant: of the function, and of the copies of it that were bound while
+the tests were collected.  What is bound later is bound anew in each process.
 
 Everything runs uncompiled.  The contact table alone comes from the compiled, unchanged grid
 method: the interpreter would need minutes for it, and the grid method has tests of its own.
 
-    python tools/mutants.py                      all modules, about an hour: make mutants
-    python tools/mutants.py --module zhai        one
-    python tools/mutants.py --function react     some functions
+    python tools/mutants.py                              all modules, about an hour: make mutants
+    python tools/mutants.py --module physics.zhai        one
+    python tools/mutants.py --function load_track        some functions
 """
 
 from __future__ import annotations
 
 import argparse
 import difflib
+import gc
 import json
 import os
 import resource
@@ -25,6 +28,7 @@ import signal
 import sys
 import tempfile
 import time
+import traceback
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -37,12 +41,14 @@ import pytest
 from _pytest.runner import runtestprotocol
 
 ROOT = Path(__file__).resolve().parents[1]
-PHYSICS = ROOT / "src" / "railquake" / "physics"
-# constant.py and state.py number rows and hold no function; kernel.py is the compiler's plumbing,
-# half of which an uncompiled run never enters.
-LEFT_OUT = ("__init__", "constant", "state", "kernel")
+PACKAGE = ROOT / "src" / "railquake"
+ROOMS = ("physics", "march")
+# Of the march: what declares rows and slots and makes functions out of them, and the compiler's
+# plumbing, half of which an uncompiled run never enters.
+LEFT_OUT = ("declaration", "packing", "rows", "rows_constant", "rows_state", "slots", "compiler")
 # quick tests that need no compiled run
 TESTS = ("tests/unit/physics", "tests/unit/assembly", "tests/verification/test_jolts.py")
+WIDTH = 36  # of a module's name in the table
 MEMORY = 6 * 2**30  # bytes of address space beyond which a mutant is ended
 
 
@@ -57,17 +63,45 @@ class Mutant:
     defaults: tuple[Any, ...] | None
 
 
+def module_name(path: Path) -> str:
+    """Name of a source file's module, without ``railquake.``: ``physics.creep.carter``."""
+    steps = path.relative_to(PACKAGE).with_suffix("").parts
+    return ".".join(steps[:-1] if steps[-1] == "__init__" else steps)
+
+
+def source_files() -> dict[str, Path]:
+    """Files that are changed, by the names of their modules."""
+    paths = [path for room in ROOMS for path in sorted((PACKAGE / room).rglob("*.py"))]
+    named = {module_name(path): path for path in paths}
+    return {name: path for name, path in named.items() if not left_out(name)}
+
+
+def left_out(module: str) -> bool:
+    """Whether a module of the march holds no stage."""
+    room, _, rest = module.partition(".")
+    return room == "march" and rest.partition(".")[0] in LEFT_OUT
+
+
+def is_placeholder(function: FunctionType) -> bool:
+    """Whether a function is a slot that only refuses to run."""
+    return "NotImplementedError" in function.__code__.co_names
+
+
 def mutants_of(module: str) -> Iterator[Mutant]:
     """All mutants of a module by mutmut's operators; those that do not compile are left out."""
+    import libcst
     from mutmut.mutation.file_mutation import create_mutations, deep_replace
 
-    path = PHYSICS / f"{module}.py"
+    path = source_files()[module]
     source = path.read_text(encoding="utf-8")
     tree, mutations, _, _ = create_mutations(str(path), source)
-    names = vars(import_module(f"railquake.physics.{module}"))
+    names = vars(import_module(f"railquake.{module}"))
     for mutation in mutations:
         function = mutation.contained_by_top_level_function
-        if function is None or names.get(function.name.value) is None:
+        if not isinstance(function, libcst.FunctionDef):
+            continue
+        original = names.get(function.name.value)
+        if not isinstance(original, FunctionType) or is_placeholder(original):
             continue
         changed = deep_replace(function, mutation.original_node, mutation.mutated_node)
         before, after = (tree.code_for_node(node) for node in (function, changed))
@@ -89,17 +123,19 @@ def mutants_of(module: str) -> Iterator[Mutant]:
 
 
 class Watch:
-    """Notes which functions of the physics run."""
+    """Notes which functions of physics and march run."""
 
     def __init__(self) -> None:
         self.seen: set[str] = set()
+        self.modules = {str(path): name for name, path in source_files().items()}
 
     def __call__(self, frame: FrameType, event: str, argument: object) -> None:
         """Of `sys.setprofile`."""
         code = frame.f_code
-        if event == "call" and code.co_filename.startswith(str(PHYSICS)):
+        module = self.modules.get(code.co_filename)
+        if event == "call" and module is not None:
             outer = code.co_qualname.partition(".")[0]
-            self.seen.add(f"{Path(code.co_filename).stem}.{outer}")
+            self.seen.add(f"{module}.{outer}")
 
 
 class Campaign:
@@ -108,13 +144,15 @@ class Campaign:
     def __init__(self, options: argparse.Namespace) -> None:
         self.options = options
         self.rows: list[dict[str, Any]] = []
+        self.bound: dict[int, list[FunctionType]] = {}
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Find out what each test calls, then look which mutants the tests kill."""
         uncompiled()
+        self.bound = functions_by_code()
         items = {item.nodeid: item for item in session.items}
-        found = in_fork(lambda: profile(list(items.values()), self.options.seconds))
+        found = in_fork(lambda: profile(list(items.values()), self.options.seconds), is_heard=True)
         if not isinstance(found, dict):
             raise SystemExit(f"the tests could not be profiled: {found}")
         times, calls, dropped = found["times"], found["calls"], found["dropped"]
@@ -151,7 +189,7 @@ class Campaign:
             fate, by = "untested", ""
             if chosen:
                 todo = [(items[t], 5.0 + 5.0 * times[t]) for t in chosen]
-                result = in_fork(lambda m=mutant, i=todo: attack(m, i))
+                result = in_fork(lambda m=mutant, i=todo: attack(m, i, self.bound))
                 fate, by = result if isinstance(result, list) else (str(result), "")
             if by and by in items:
                 self.recent[name] = [by, *(t for t in recent if t != by)][:4]
@@ -167,27 +205,43 @@ class Campaign:
 
 
 def uncompiled() -> None:
-    """Bind every kernel for the interpreter, but that which fills the contact table."""
+    """Bind every kernel for the interpreter, but that which fills the contact table.
+
+    And bind it whenever it is asked for: one that were kept would hold the code of before.
+    """
     from railquake.assembly.geometry import build_geometry, with_table
     from railquake.inputs.wheelrail import WheelRail
-    from railquake.physics import kernel
-    from railquake.physics.profiles import fill_table
+    from railquake.march.compiler import PYTHON, SCALAR, Kernel
+    from railquake.physics.contact_table import fill_table
 
-    table = kernel.bind(fill_table, kernel.SCALAR)
+    # the package passes on the function of the same name
+    binding = import_module("railquake.march.compiler.bind")
+    table = binding.bind(fill_table, SCALAR)
     for pair in ("bart", "s1002-60e1"):  # made here once, and known to all forks
         with_table(build_geometry(WheelRail.from_preset(pair)))
-    plain = kernel.PYTHON
 
-    def bound(entry: Any, target: Any, key: str, laws: Any, constants: Any) -> Any:
+    def bound(entry: Any, target: Any, key: str, laws: Any, held: Any) -> Any:
         if entry is fill_table:
             return table
-        return kernel.Kernel(kernel._rebuild(entry, plain, laws, constants, {}), None)
+        return Kernel(binding._rebuild(entry, PYTHON, laws, held.layout, {}), None)
 
-    kernel._bind_cached = bound  # type: ignore[assignment]
+    binding._bind_cached = bound
 
 
-def in_fork(work: Any) -> Any:
-    """What ``work`` returns, in a process of its own; ``"crashed"`` or ``"timeout"`` otherwise."""
+def functions_by_code() -> dict[int, list[FunctionType]]:
+    """All functions that are there, by their code's identity: each with its bound copies."""
+    found: dict[int, list[FunctionType]] = defaultdict(list)
+    for thing in gc.get_objects():
+        if isinstance(thing, FunctionType):
+            found[id(thing.__code__)].append(thing)
+    return found
+
+
+def in_fork(work: Any, is_heard: bool = False) -> Any:
+    """What ``work`` returns, in a process of its own; ``"crashed"`` or ``"timeout"`` otherwise.
+
+    Its errors are seen where it ``is_heard``.
+    """
     sys.stdout.flush()
     reading, writing = os.pipe()
     child = os.fork()
@@ -195,6 +249,7 @@ def in_fork(work: Any) -> Any:
         os.close(reading)
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         silent = os.open(os.devnull, os.O_WRONLY)
+        errors = os.fdopen(os.dup(2), "w")
         os.dup2(silent, 1)
         os.dup2(silent, 2)
         status = 1
@@ -202,6 +257,10 @@ def in_fork(work: Any) -> Any:
             with os.fdopen(writing, "w") as pipe:
                 json.dump(work(), pipe)
             status = 0
+        except BaseException:
+            if is_heard:
+                traceback.print_exc(file=errors)
+                errors.flush()
         finally:
             os._exit(status)
     os.close(writing)
@@ -257,11 +316,16 @@ def profile(items: list[pytest.Item], seconds: float) -> dict[str, Any]:
     return {"times": times, "calls": calls, "dropped": dropped}
 
 
-def attack(mutant: Mutant, items: list[tuple[pytest.Item, float]]) -> tuple[str, str]:
+def attack(
+    mutant: Mutant,
+    items: list[tuple[pytest.Item, float]],
+    bound: dict[int, list[FunctionType]],
+) -> tuple[str, str]:
     """Whether one of the tests kills the mutant, and which; each has its own time limit."""
-    function = getattr(import_module(f"railquake.physics.{mutant.module}"), mutant.function)
-    function.__code__ = mutant.code
-    function.__defaults__ = mutant.defaults
+    original = getattr(import_module(f"railquake.{mutant.module}"), mutant.function)
+    for function in bound[id(original.__code__)]:
+        function.__code__ = mutant.code
+        function.__defaults__ = mutant.defaults
     order = [item for item, _ in items]
     for (item, limit), following in zip(items, [*order[1:], None], strict=True):
         signal.setitimer(signal.ITIMER_REAL, limit)  # its default action ends the process
@@ -273,7 +337,7 @@ def attack(mutant: Mutant, items: list[tuple[pytest.Item, float]]) -> tuple[str,
 def table(rows: list[dict[str, Any]]) -> tuple[str, float]:
     """Figures of each module, and the share killed of all, in percent."""
     lines = [
-        f"{'module':<12}{'mutants':>8}{'killed':>8}{'survived':>10}{'untested':>10}{'share':>9}"
+        f"{'module':<{WIDTH}}{'mutants':>8}{'killed':>8}{'survived':>10}{'untested':>10}{'share':>9}"
     ]
     groups = {
         module: [r for r in rows if r["module"] == module]
@@ -286,15 +350,15 @@ def table(rows: list[dict[str, Any]]) -> tuple[str, float]:
         killed = len(group) - survived - untested
         share = 100.0 * killed / max(len(group), 1)
         lines.append(
-            f"{module:<12}{len(group):>8}{killed:>8}{survived:>10}{untested:>10}{share:>8.1f}%"
+            f"{module:<{WIDTH}}{len(group):>8}{killed:>8}{survived:>10}{untested:>10}{share:>8.1f}%"
         )
     return "\n".join(lines), share
 
 
 def main() -> int:
     """Command line."""
-    modules = [path.stem for path in sorted(PHYSICS.glob("*.py")) if path.stem not in LEFT_OUT]
-    parser = argparse.ArgumentParser(description="Mutation testing of the physics.")
+    modules = list(source_files())
+    parser = argparse.ArgumentParser(description="Mutation testing of physics and march.")
     parser.add_argument("--module", action="append", choices=modules, help="only these modules")
     parser.add_argument("--function", action="append", help="only these functions")
     parser.add_argument("--every", type=int, default=1, help="only every n-th mutant: a sample")

@@ -7,8 +7,7 @@ calls a law of `railquake.physics` and stores what it gives.
 `rows`                         where each stands, for the sizes of a run
 `packing`, `packed`, `order`   how named tuples, matrices and the vehicle's degrees are kept in rows
 `slots`                        what may be swapped, and what may stand there
-`ground`, `structure`, `track`, `sprung`, `wheelset`, `contact`, `peaks`, `events`
-                               the stages
+`ground`, `structure`, `track`, `sprung`, `wheelset`, `contact`, `peaks`, `events`   the stages
 `step`                         Figure 4
 `frames`                       frames, for one scenario, many abreast, or a thread each on a GPU
 `compiler`                     an entry function with the chosen laws, for a target

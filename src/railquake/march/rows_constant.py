@@ -2,7 +2,7 @@
 
 from railquake.march.declaration import Row, block, row
 
-__all__ = ["CONSTANT_ROWS"]
+__all__ = ["CONSTANT_GROUPS", "CONSTANT_ROWS"]
 
 _AXIS = (
     ("FINE", "fine within +- this"),
@@ -98,5 +98,12 @@ _VEHICLE = (
     row("DAMPING", "N s/m, N s or N m s", "C_v", rows="VEHICLE_ENTRIES"),
 )
 
-CONSTANT_ROWS: tuple[Row, ...] = (*_TIME, *_STRUCTURE, *_CONTACT, *_MEASURES, *_VEHICLE)
+CONSTANT_GROUPS: dict[str, tuple[Row, ...]] = {
+    "time steps": _TIME,
+    "structure": _STRUCTURE,
+    "contact": _CONTACT,
+    "measures": _MEASURES,
+    "vehicle": _VEHICLE,
+}
+CONSTANT_ROWS: tuple[Row, ...] = tuple(row for group in CONSTANT_GROUPS.values() for row in group)
 """The hinge's own rows follow: `rows.hinge_parts`."""

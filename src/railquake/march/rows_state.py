@@ -4,7 +4,7 @@ from railquake.march.declaration import Row, block, row
 from railquake.measures import MEASURES, StateRow
 from railquake.physics.derailment import EVENTS
 
-__all__ = ["FILTERED", "PATCHES", "STATE_ROWS"]
+__all__ = ["FILTERED", "PATCHES", "STATE_GROUPS", "STATE_ROWS"]
 
 PATCHES = ("left tread", "left flange", "right tread", "right flange")
 FILTERED = ("lateral force", "load left", "load right", "lateral left", "lateral right")
@@ -287,10 +287,18 @@ _VEHICLE = (
     row("VEHICLE_STEP", "m or rad", "last increment of the displacement", rows="DOFS"),
 )
 
-_BEFORE: tuple[Row, ...] = (
-    *_GROUND, *_STRUCTURE, *_TRACK, *_WHEELSET, *_CELLS, *_PATCHES, *_FORCES, *_SUSPENSION, *_ENERGY
-)  # fmt: skip
-_AFTER: tuple[Row, ...] = (*_FRAME, *_PRESCRIBED, *_VEHICLE)
+_BEFORE = {
+    "ground": _GROUND,
+    "structure": _STRUCTURE,
+    "track": _TRACK,
+    "wheelset": _WHEELSET,
+    "cells of the contact table": _CELLS,
+    "patches": _PATCHES,
+    "forces": _FORCES,
+    "suspension between its evaluations": _SUSPENSION,
+    "energy": _ENERGY,
+}
+_AFTER = {"frame": _FRAME, "prescribed track": _PRESCRIBED, "vehicle": _VEHICLE}
 
 
 def _measured() -> tuple[Row, ...]:
@@ -298,7 +306,7 @@ def _measured() -> tuple[Row, ...]:
 
     The measure is its declaration; `peaks` accumulates it.
     """
-    declared = {row.name for row in (*_BEFORE, *_AFTER)}
+    declared = {row.name for group in {**_BEFORE, **_AFTER}.values() for row in group}
     return tuple(
         row(measure.place.name, measure.unit, measure.caption)
         for measure in MEASURES
@@ -306,5 +314,6 @@ def _measured() -> tuple[Row, ...]:
     )
 
 
-STATE_ROWS: tuple[Row, ...] = (*_BEFORE, *_measured(), *_AFTER)
+STATE_GROUPS: dict[str, tuple[Row, ...]] = {**_BEFORE, "measures": _measured(), **_AFTER}
+STATE_ROWS: tuple[Row, ...] = tuple(row for group in STATE_GROUPS.values() for row in group)
 """The hinge's own rows follow: `rows.hinge_parts`."""

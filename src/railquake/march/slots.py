@@ -11,12 +11,11 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from railquake.laws import CREEP_LAWS, HINGE_LAWS, RESTITUTION_LAWS, Family
 from railquake.march import contact, frames, ground, structure, track
 from railquake.march.packing import reader, writer
 from railquake.physics import creep, elementary, hinge, impact
-from railquake.physics.creep import CREEP_LAWS
-from railquake.physics.hinge import HINGE_LAWS
-from railquake.physics.impact import RESTITUTION_LAWS
+from railquake.physics.hinge import HingeLaw
 
 __all__ = ["SLOTS", "Slot", "chosen", "solving"]
 
@@ -39,6 +38,8 @@ class Slot:
         ``name of a choice -> {neutral function: what stands in its place}``.
     names : callable
         ``() -> names that may be chosen``.
+    source : callable
+        ``name of a choice -> its publication``, where it has one.
     """
 
     name: str
@@ -46,6 +47,24 @@ class Slot:
     functions: tuple[Law, ...]
     laws: Callable[[str], Laws]
     names: Callable[[], tuple[str, ...]]
+    source: Callable[[str], str] = lambda _: ""
+
+
+def _family(
+    name: str,
+    decided_by: str,
+    family: Family[Any],
+    functions: tuple[Law, ...],
+    laws: Callable[[Any], Laws],
+) -> Slot:
+    return Slot(
+        name,
+        decided_by,
+        functions,
+        lambda choice: laws(family[choice]),
+        family.names,
+        lambda choice: str(family[choice].source),
+    )
 
 
 def _fixed(name: str, decided_by: str, choices: Mapping[str, Laws]) -> Slot:
@@ -53,8 +72,7 @@ def _fixed(name: str, decided_by: str, choices: Mapping[str, Laws]) -> Slot:
     return Slot(name, decided_by, functions, choices.__getitem__, lambda: tuple(choices))
 
 
-def _hinge(name: str) -> Laws:
-    law = HINGE_LAWS[name]
+def _hinge(law: HingeLaw) -> Laws:
     state = type(law.virgin)
     return {
         hinge.advance: law.advance,
@@ -102,23 +120,24 @@ _ALONE: Laws = {
 }
 
 SLOTS: tuple[Slot, ...] = (
-    Slot(
+    _family(
         "creep law",
         "`wheelrail.creep_law`",
+        CREEP_LAWS,
         (creep.saturation,),
-        lambda name: {creep.saturation: CREEP_LAWS[name].saturation},
-        lambda: CREEP_LAWS.names(),
+        lambda law: {creep.saturation: law.saturation},
     ),
-    Slot(
+    _family(
         "restitution law",
         "`wheelrail.restitution_law`",
+        RESTITUTION_LAWS,
         (impact.hysteresis,),
-        lambda name: {impact.hysteresis: RESTITUTION_LAWS[name].hysteresis},
-        lambda: RESTITUTION_LAWS.names(),
+        lambda law: {impact.hysteresis: law.hysteresis},
     ),
-    Slot(
+    _family(
         "hinge law",
         "`support.hinge`",
+        HINGE_LAWS,
         (
             hinge.advance,
             hinge.refresh,
@@ -127,7 +146,6 @@ SLOTS: tuple[Slot, ...] = (
             structure.read_hinge_parameters,
         ),
         _hinge,
-        lambda: HINGE_LAWS.names(),
     ),
     _fixed("structure", "`support.kind`", {"node": _NODE, "prescribed": _PRESCRIBED}),
     _fixed("contact method", "`solver.contact`", {"table": _TABLE, "grid": _GRID}),

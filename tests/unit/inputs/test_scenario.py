@@ -65,7 +65,7 @@ def test_solver_defaults():
         "dt": 1e-5,
         "time_step_tolerance": 0.01,
         "contact": "table",
-        "hinge_solve": "newton",
+        "hinge_solve": None,
         "substeps": None,
         "phi": 0.5,
         "psi": 0.5,

@@ -71,7 +71,7 @@ def known_damage(state: Any, parameters: Any) -> float:
 class HingeLaw:
     """One law of the hinge.
 
-    Attributes
+    Parameters
     ----------
     name : str
         As in a case file.
