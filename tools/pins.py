@@ -42,7 +42,7 @@ def report(group: str, known: dict[str, Any], found: dict[str, Any], exact: bool
     differences = pinned.compare(group, known, found, exact)
     beyond = [d for d in differences if d.excess > 1.0]
     differing = {d.run for d in differences}
-    print(f"  {len(known)} runs, {len(known) - len(differing)} the same to the last bit")
+    print(f"  {len(known)} runs, {len(known.keys() - differing)} the same to the last bit")
     for lifting in (False, True):
         worst: dict[str, tuple[float, str]] = {}
         for d in differences:

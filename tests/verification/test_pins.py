@@ -96,6 +96,7 @@ def test_what_is_the_same_has_no_difference():
         {"steps": 199_999},
         {"uplift_first_s": 0.8},
         {"pbd_m": None},
+        {"pbd_m": float("nan")},
     ],
 )
 @pytest.mark.parametrize("run", [SMOOTH, LIFTING])
@@ -137,9 +138,21 @@ def test_a_run_that_is_missing_or_new_is_noticed():
         assert difference.excess > 1.0
 
 
+def test_a_run_that_fails_is_noticed():
+    failed = {"status": "failed", "error": "solver.dt: too long"}
+    differences = pinned.compare("mixed", {SMOOTH: pins("mixed")[SMOOTH]}, {SMOOTH: failed})
+    assert {"status", "error", "pbd_m"} <= {d.measure for d in differences if d.excess > 1.0}
+
+
 def test_a_history_that_ends_elsewhere_is_noticed():
     run = "jolt"
     value = pins("plain")[run]["last car_roll_rad"]
     assert found_with({"last car_roll_rad": value * (1.0 + 1e-6)}, run, "plain") == [
         "last car_roll_rad"
     ]
+
+
+def test_a_millionth_more_shaking_is_noticed(monkeypatch):
+    run = "jolt at grade, coulomb, lopsided"
+    monkeypatch.setitem(pinned.PLAIN, run, {**pinned.PLAIN[run], "scale": 1.0 + 1e-6})
+    assert len(beyond("plain", run, pinned.plain_row(run))) > 20

@@ -19,6 +19,7 @@ from railquake.physics.hinge.bouc_wen import (
     Parameters,
     degradation,
     degradation_extrapolated,
+    pinched_stiffness,
     pinched_stiffness_kept,
 )
 from stages import stage
@@ -139,6 +140,17 @@ def test_refreshed_hinge_knows_its_degradation_and_pinching(bouc_wen):
     assert s[state.HINGE_LOG_A, 0] == pytest.approx(np.log(later / a) / step, rel=1e-4)
     pinched = np.exp(-0.5 * (3e-4 / h.sigma) ** h.u) * (1 - np.exp(-0.5 * (1.5e-4 / h.eps_p) ** 8))
     assert s[state.HINGE_KP, 0] == pytest.approx(h.k0 * (1 - h.rho_p * pinched))
+
+
+def test_lanes_refresh_their_hinges_as_they_go(bouc_wen):
+    """Pinching is that of a state at most some steps ago, and no longer that of the start."""
+    s = abreast(bouc_wen, 5)
+    for lane, system in enumerate(bouc_wen):
+        law = Parameters(*system.constants[constant.HINGE :, 0])
+        now = pinched_stiffness(s[state.THETA1, lane], s[state.HINGE_EPS, lane], law)
+        begun = system.start[state.HINGE_KP, 0]
+        assert s[state.HINGE_KP, lane] == pytest.approx(now, rel=0.02)
+        assert abs(now - begun) > 0.05 * law.k0
 
 
 def numbers(**named):

@@ -72,6 +72,7 @@ def test_ground_and_gravity_work_on_the_steps_of_the_bodies(system):
     )
     s[state.DASHPOT_POWER] = 9.0
     # the wheelset has come by its steps from where it set off
+    s[state.VEHICLE_X + np.array([4, 8]), 0] = 0.3, -0.2
     stage(system, wheelset.keep_place)(s, 0)
     s[state.VEHICLE_X + np.array([4, 8]), 0] += steps[[4, 8]]
     stage(system, sprung.work_on_bodies)(s, q, 0)

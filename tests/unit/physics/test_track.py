@@ -10,6 +10,7 @@ from railquake.march import contact, track, wheelset
 from railquake.march.rows import constant, size, state
 from railquake.march.slots import chosen
 from railquake.physics import pier
+from railquake.physics.track import turn_on
 
 E, H = 2.3, 1.8  # of bart-berkeley
 WHEELSET = np.array([size.WHEELSET_Y, size.WHEELSET_Z, size.WHEELSET_PHI])
@@ -107,6 +108,12 @@ def test_rates_of_the_wheelset_are_those_of_its_place(values, dt):
     ):
         difference = (places[1][row] - places[0][row]) / (2.0 * dt)
         assert there[rate] == pytest.approx(difference, abs=1e-7)
+
+
+@pytest.mark.parametrize("turn", [1e-3, -1e-3])
+def test_a_small_turn_is_followed_to_the_second_order(turn):
+    found = turn_on(np.sin(0.3), np.cos(0.3), turn)
+    assert found == pytest.approx((np.sin(0.3 + turn), np.cos(0.3 + turn)), abs=abs(turn) ** 3 / 2)
 
 
 @pytest.mark.parametrize("share", [0.05, 0.2, 0.5])
