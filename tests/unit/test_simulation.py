@@ -6,7 +6,6 @@ import pytest
 import railquake as rq
 from railquake.inputs.ground_motion import GroundMotion
 from railquake.march.compiler import PYTHON
-from railquake.physics.low_pass import low_pass_coefficients
 
 SHORT = {"seed": 3, "duration": "2 s", "pga": "0.6 g", "highpass_frequency": "0.6 Hz"}
 
@@ -104,13 +103,6 @@ def test_profiles_that_never_meet_are_refused():
         rq.assemble(
             rq.scenario(wheelrail={"preset": "bart", "running_circle": "3 m"}, synthetic=SHORT)
         )
-
-
-def test_low_pass_is_scipys_butterworth():
-    from scipy.signal import butter
-
-    b, a = butter(2, 20.0, fs=1000.0)
-    assert low_pass_coefficients(20.0, 1e-3) == pytest.approx((*b, a[1], a[2]), rel=1e-9)
 
 
 def test_history_has_names_units_and_a_time_axis():

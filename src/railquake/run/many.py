@@ -1,6 +1,6 @@
 """Many runs: scenarios advance in lockstep, some to a batch, on threads or on a GPU.
 
-On the CPU a batch holds as many lanes as `kernel.lockstep_target` has, on a GPU thousands (see
+On the CPU a batch holds as many lanes as `compiler.lockstep_target` has, on a GPU thousands (see
 `device`).  A lane whose scenario has ended is given the next one, so records of different lengths
 do not wait for each other.  Scenarios that need another kernel, another contact table or another
 number of steps a frame go to another batch.
@@ -100,7 +100,7 @@ def simulate_many(
     -----
     The step is that of `simulate`, but for the hinge (one consistently linearised solve a step, and
     its degradation extrapolated between evaluations) and, unless ``solver.substeps`` says
-    otherwise, for the longer step of structure and sprung bodies (`march.step`).  The grid method
+    otherwise, for the longer step of structure and sprung bodies (`step.step`).  The grid method
     of contact and a hinge that is to be iterated are run by `simulate` itself.
     """
     make_lanes = lanes_on(device)
