@@ -106,4 +106,4 @@ CONSTANT_GROUPS: dict[str, tuple[Row, ...]] = {
     "vehicle": _VEHICLE,
 }
 CONSTANT_ROWS: tuple[Row, ...] = tuple(row for group in CONSTANT_GROUPS.values() for row in group)
-"""The hinge's own rows follow: `rows.hinge_parts`."""
+# the hinge's own rows follow: `rows.hinge_parts`

@@ -316,4 +316,4 @@ def _measured() -> tuple[Row, ...]:
 
 STATE_GROUPS: dict[str, tuple[Row, ...]] = {**_BEFORE, "measures": _measured(), **_AFTER}
 STATE_ROWS: tuple[Row, ...] = tuple(row for group in STATE_GROUPS.values() for row in group)
-"""The hinge's own rows follow: `rows.hinge_parts`."""
+# the hinge's own rows follow: `rows.hinge_parts`
