@@ -171,7 +171,7 @@ def march_abreast(
 
     Parameters
     ----------
-    state_in, constants : array, shape (rows, LANES)
+    state_in, constants : array, shape (its rows, LANES)
         As in `march`; the frame's number of steps must be the same in all lanes.
     geometry : Geometry
     drive : array, shape (any, 2 or 8)

@@ -51,7 +51,7 @@ def step(S: Array, Q: Array, geometry: Geometry, lanes: int, substeps: int) -> N
 
     Parameters
     ----------
-    S, Q : array, shape (rows, lanes)
+    S, Q : array, shape (its rows, lanes)
         Rows of `rows_state` and `rows_constant`.
     geometry : Geometry
     lanes : int

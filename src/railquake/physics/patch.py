@@ -62,7 +62,7 @@ def patch_forces(
     ----------
     penetration : float
         Z - G, vertical, m; positive in contact.
-    patch : Patch
+    patch : profiles.Patch
     motion : WheelMotion
     held : float
         chi/K of this contact so far, s/m; 0 while open.

@@ -44,7 +44,7 @@ __all__ = [
     "simulate_many",
 ]
 
-Row = dict[str, Any]
+Measures = dict[str, Any]
 Device = Literal["cpu", "cuda"]
 REFRESH_STEPS = 10  # of the hinge's degradation
 REFRESH_TIME = 1e-4  # s; with longer time steps it is refreshed after fewer of them
@@ -61,7 +61,7 @@ def simulate_many(
     refresh_steps: int = REFRESH_STEPS,
     hinge_solve: Literal["linearised", "newton"] = "linearised",
     device: Device = "cpu",
-) -> Generator[tuple[int, Row]]:
+) -> Generator[tuple[int, Measures]]:
     """Run many scenarios; any may differ from any other.
 
     Parameters
@@ -147,7 +147,7 @@ def choose_time_step(
         If there is no scenario, or one cannot be run.
     """
 
-    def run(cases: Sequence[Scenario]) -> list[Row]:
+    def run(cases: Sequence[Scenario]) -> list[Measures]:
         rows = dict(simulate_many(cases, threads=threads))
         return [rows[k] for k in range(len(cases))]
 
@@ -157,13 +157,15 @@ def choose_time_step(
 def _results(
     scenarios: Iterator[tuple[int, Scenario]],
     threads: int,
-    run: Callable[[Iterator[tuple[int, Scenario]], threading.Event], Iterator[tuple[int, Row]]],
-) -> Generator[tuple[int, Row]]:
-    found: queue.Queue[tuple[int, Row] | BaseException | None] = queue.Queue(maxsize=256)
+    run: Callable[
+        [Iterator[tuple[int, Scenario]], threading.Event], Iterator[tuple[int, Measures]]
+    ],
+) -> Generator[tuple[int, Measures]]:
+    found: queue.Queue[tuple[int, Measures] | BaseException | None] = queue.Queue(maxsize=256)
     stop = threading.Event()
     drawing = threading.Lock()
 
-    def put(item: tuple[int, Row] | BaseException | None) -> None:
+    def put(item: tuple[int, Measures] | BaseException | None) -> None:
         while not stop.is_set():
             try:
                 found.put(item, timeout=0.2)
@@ -322,7 +324,7 @@ def run_here(
     refresh_steps: int = REFRESH_STEPS,
     singly: bool = False,
     make_lanes: MakeLanes = _Abreast,
-) -> Iterator[tuple[int, Row]]:
+) -> Iterator[tuple[int, Measures]]:
     """Run numbered scenarios on this thread: one thread's share of `simulate_many`.
 
     Parameters
@@ -429,7 +431,7 @@ class _Batch:
         lane = self.free.pop()
         self.jobs[lane] = replace(job, system=self.lanes.load(lane, job.system))
 
-    def advance(self) -> list[tuple[int, Row]]:
+    def advance(self) -> list[tuple[int, Measures]]:
         """Run until a lane ends, or a while; the rows of what has ended."""
         begin = time.perf_counter()
         self.lanes.march(
@@ -452,20 +454,20 @@ class _Batch:
                 self.free.append(lane)
         return rows
 
-    def drained(self, stop: threading.Event) -> Iterator[tuple[int, Row]]:
+    def drained(self, stop: threading.Event) -> Iterator[tuple[int, Measures]]:
         """Run all lanes to their ends."""
         while self.jobs and not stop.is_set():
             yield from self.advance()
 
 
-def failed_row(error: Exception) -> Row:
+def failed_row(error: Exception) -> Measures:
     """The row of a scenario that could not be run."""
     is_input = isinstance(error, InputError)
     text = str(error) if is_input else f"unexpected: {on_one_line(error)}"
     return {"status": "failed", "error": text}
 
 
-def _row(job: _Job, end: np.ndarray[Any, np.dtype[np.float64]], frames: int) -> Row:
+def _row(job: _Job, end: np.ndarray[Any, np.dtype[np.float64]], frames: int) -> Measures:
     system = job.system
     try:
         return assess(
