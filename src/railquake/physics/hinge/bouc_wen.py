@@ -286,7 +286,8 @@ def solve(
         step,
         backbone * (x + step) + hysteretic * z_new,
         backbone + hysteretic * z_x,
-        1.0 if abs(correction) > tolerance else 0.0,
+        # the last correction of a large z is never below its last digit
+        1.0 if abs(correction) > max(tolerance, 1e-15 * abs(z_new)) else 0.0,
         State(
             z_new,
             eps + energy * z_new * step,
