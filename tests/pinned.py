@@ -539,7 +539,7 @@ def compare(group, pinned, found, exact=False):
 def compare_rows(group, run, old, new, exact=False):
     """The same of one run."""
     differences = []
-    for measure in old:  # measures that have come since are no difference
+    for measure in {**old, "error": None}:  # measures that have come since are no difference
         a, b = old.get(measure, "missing"), new.get(measure, "missing")
         if a == b or (a != a and b != b):  # NaN
             continue

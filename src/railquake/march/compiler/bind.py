@@ -114,7 +114,7 @@ def _bind_cached(
         return Kernel(rebuilt, None)
     variant = hashlib.sha256(key.encode()).hexdigest()[:12]
     folder = cache_folder() / "kernels" / source_hash() / f"{target.name}-{variant}"
-    return Kernel(cpu.compile_entry(rebuilt, folder), folder)
+    return Kernel(cpu.compile_entry(rebuilt, folder, target.lanes), folder)
 
 
 def _rebuild(

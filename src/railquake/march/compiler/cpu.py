@@ -93,7 +93,7 @@ def _loop_in_assembly() -> str:
         return str(library.get_asm_str())
 
 
-def compile_entry(function: Law, folder: Path) -> Law:
+def compile_entry(function: Law, folder: Path, lanes: int) -> Law:
     """Compile an entry function, kept on disk in ``folder``.
 
     Without counting references to arrays (``_nrt``): it makes none but `own_memory`, and the
@@ -103,12 +103,38 @@ def compile_entry(function: Law, folder: Path) -> Law:
 
     dispatcher = numba.njit(nogil=True, **_options())(function)
     _keep_on_disk(dispatcher, folder)
+    if lanes == 1:
+        dispatcher.compile = _without_vectors(dispatcher.compile)
     entry: Law = dispatcher
     return entry
 
 
 def _options() -> dict[str, Any]:
     return {"error_model": "numpy", "fastmath": set(FASTMATH), "_nrt": False}
+
+
+def _without_vectors(compile_for: Law) -> Law:
+    """Compile without vectorising loops.
+
+    One scenario has no lanes.  What is left are short loops over rows, which are to be unrolled:
+    as vectors they must be gathered, and a step takes a third longer.
+    """
+
+    def compiled(signature: Any) -> Any:
+        import numba.core.config
+        from numba.core.compiler_lock import global_compiler_lock
+
+        config: Any = numba.core.config
+
+        with global_compiler_lock:
+            former = config.LOOP_VECTORIZE
+            config.LOOP_VECTORIZE = 0
+            try:
+                return compile_for(signature)
+            finally:
+                config.LOOP_VECTORIZE = former
+
+    return compiled
 
 
 def own_memory(rows: int, lanes: int) -> Law:
