@@ -106,12 +106,12 @@ class Contact:
             2.0 * np.pi / 3.0 * np.sqrt(second) / (k * first**1.5),
             second / (k * first),
         )
-        # Kalker's table at this Poisson's ratio, a coordinate that is 2 - b/a beyond a circle
+        # Kalker's coefficients at this Poisson's ratio, along the logarithm of a/b
         nu = pair.poisson_ratio
         weights = np.array(
             [(nu - 0.25) * (nu - 0.5) * 8.0, nu * (0.5 - nu) * 16.0, nu * (nu - 0.25) * 8.0]
         )
-        self.kalker = kalker["place"], kalker["C22"] @ weights, kalker["C23"] @ weights
+        self.kalker = kalker["place"], *(np.log(kalker[name] @ weights) for name in ("C22", "C23"))
 
     def rail_at(self, y):
         """Height, slope and second derivative."""
@@ -182,9 +182,9 @@ class Contact:
         k, stiff, area = (np.interp(ratio, self.curvatures, c) for c in self.ellipse)
         hertz = self.modulus * stiff / np.sqrt(lateral + rolling)
         ab = area * delta / (lateral + rolling)
-        a_over_b = np.clip(np.where(lateral < rolling, k, 1.0 / k), 0.1, 10.0)
-        place = np.where(a_over_b <= 1.0, a_over_b, 2.0 - 1.0 / a_over_b)
-        c22, c23 = (np.interp(place, self.kalker[0], c) for c in self.kalker[1:])
+        a_over_b = np.where(lateral < rolling, k, 1.0 / k)
+        place = np.log(a_over_b)
+        c22, c23 = (np.exp(np.interp(place, self.kalker[0], c)) for c in self.kalker[1:])
         n = np.maximum(hertz * delta**1.5 * (1.0 + damping * approach), 0.0)
         creepage = np.sum(relative * tangent, axis=1) / self.speed
         by_spin = -self.shear * ab**1.5 * c23 * np.sin(lean) / radius

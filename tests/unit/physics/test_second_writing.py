@@ -50,9 +50,8 @@ def ellipse(second, lateral, rolling):
     ratio = min(lateral, rolling) / max(lateral, rolling)
     k, stiff, area = (np.interp(ratio, second.curvatures, c) for c in second.ellipse)
     ab = area / (lateral + rolling)
-    a_over_b = min(max(k if lateral < rolling else 1.0 / k, 0.1), 10.0)
-    place = a_over_b if a_over_b <= 1.0 else 2.0 - 1.0 / a_over_b
-    c22, c23 = (np.interp(place, second.kalker[0], c) for c in second.kalker[1:])
+    place = math.log(k if lateral < rolling else 1.0 / k)
+    c22, c23 = (math.exp(np.interp(place, second.kalker[0], c)) for c in second.kalker[1:])
     stiffness = second.modulus * stiff / math.sqrt(lateral + rolling)
     return stiffness, second.shear * ab * c22, second.shear * ab**1.5 * c23
 
@@ -60,7 +59,7 @@ def ellipse(second, lateral, rolling):
 @settings(max_examples=60, deadline=None)
 @given(st.floats(0.05, 60.0), st.floats(0.5, 3.0))
 def test_hertz_and_kalker_of_any_curvatures(second, lateral, rolling):
-    """Johnson's formulas in the semi-axes' ratio, Kalker's table linear in it."""
+    """Johnson's formulas in the semi-axes' ratio, Kalker's table in their logarithms."""
     table = hertz.hertz_table(*STEEL)
     found = hertz.hertz_lookup(
         lateral, rolling, table.stiffness, table.area, table.creep, table.spin
@@ -81,7 +80,7 @@ def test_axes_of_the_ellipse_are_tabulated_the_right_way_round():
         assert hertz.hertz_coefficients(angle)[0] == pytest.approx(m[0])  # a plain number too
 
 
-@pytest.mark.parametrize(("end", "ratio"), [(0.0, 0.1), (math.pi, 10.0)])
+@pytest.mark.parametrize(("end", "ratio"), [(0.0, 0.1), (math.pi, 40.0)])
 def test_nearly_line_contacts_keep_kalkers_last_column(end, ratio):
     table = hertz.hertz_table(*STEEL)
     _, c22, c23 = kalker_coefficients(np.array([ratio]), STEEL[1])
@@ -92,9 +91,9 @@ def test_nearly_line_contacts_keep_kalkers_last_column(end, ratio):
     assert math.isfinite(table.stiffness[at])
 
 
-@pytest.mark.parametrize("ratio", [12.0, 1e3])
-def test_kalkers_table_is_held_at_its_ends(ratio):
-    for beyond, last in ((ratio, 10.0), (1.0 / ratio, 0.1)):
+@pytest.mark.parametrize("factor", [1.2, 1e2])
+def test_kalkers_coefficients_are_held_at_their_ends(factor):
+    for beyond, last in ((40.0 * factor, 40.0), (0.1 / factor, 0.1)):
         assert np.concatenate(kalker_coefficients(beyond * np.ones(1), 0.3)) == pytest.approx(
             np.concatenate(kalker_coefficients(last * np.ones(1), 0.3))
         )
