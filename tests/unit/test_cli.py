@@ -165,6 +165,11 @@ def test_probe_creep_opposes_the_creepage(capsys):
     arguments = "--semi-axes 6e-3,5e-3 --load 50e3 --creepage 1e-3 --spin 0 --mu 0.3 --json"
     assert main(["probe", "creep", *arguments.split(), "--law", "coulomb"]) == 0
     assert json.loads(capsys.readouterr().out)["lateral_force_n"] < 0.0
+    assert (
+        main(["probe", "creep", *arguments.split(), "--longitudinal", "0.01", "--law=fastsim"]) == 0
+    )
+    found = json.loads(capsys.readouterr().out)
+    assert found["longitudinal_force_n"] < 10.0 * found["lateral_force_n"] < 0.0
 
 
 @pytest.mark.parametrize(

@@ -79,8 +79,9 @@ def test_own_creep_law_stands_in_the_slot(own):
     assert saturation(1e-9, 1.0) == 1.0
     assert saturation(5.0, 10.0) * 5.0 == pytest.approx(10.0 * np.tanh(0.5), rel=1e-12)
     bound = bind(patch_forces, PYTHON, chosen({"creep law": "tanh"})).call
-    names = bound.__globals__["saturation"].__code__
-    assert names is saturation.__code__
+    on_tread, on_flange = (bound.__globals__[f"bound_on_{zone}"] for zone in ("tread", "flange"))
+    assert on_tread.__globals__["saturation"].__code__ is saturation.__code__
+    assert on_flange.__globals__["flange_saturation"].__code__ is not saturation.__code__
 
 
 def test_name_that_is_taken_is_refused(own):

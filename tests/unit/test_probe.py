@@ -169,15 +169,18 @@ def test_wheelset_that_cannot_stand_is_refused(shift, load):
 # --- creep and modes ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("law", ["coulomb", "she", "carter", "polach"])
+@pytest.mark.parametrize("law", ["coulomb", "she", "carter", "polach", "fastsim"])
 def test_creep_force_opposes_creepage_and_spin_and_ends_at_friction(law):
     given = ((6e-3, 5e-3), 50e3)
     steel = (0.3, 82e9, 0.28, law)
-    small, f22 = creep_force(*given, 1e-9, 0.0, *steel)
-    assert small == pytest.approx(-1e-9 * f22, rel=1e-4)
-    assert creep_force(*given, 0.0, 0.05, *steel)[0] < 0.0
-    large, _ = creep_force(*given, -1.0, 0.0, *steel)
-    assert large == pytest.approx(0.3 * 50e3, rel=2e-3)
+    small = creep_force(*given, (0.0, 1e-9, 0.0), *steel)
+    assert small.lateral == pytest.approx(-1e-9 * small.f22, rel=1e-4)
+    assert creep_force(*given, (0.0, 0.0, 0.05), *steel).lateral < 0.0
+    large = creep_force(*given, (0.0, -1.0, 0.0), *steel)
+    assert large.lateral == pytest.approx(0.3 * 50e3, rel=2e-3)
+    both = creep_force(*given, (1.0, -1.0, 0.0), *steel)  # friction bounds the vector
+    assert math.hypot(both.lateral, both.longitudinal) == pytest.approx(0.3 * 50e3, rel=1e-2)
+    assert both.longitudinal < 0.0 < both.lateral
 
 
 def test_modes_are_named_by_their_shapes():

@@ -48,6 +48,7 @@ def test_says_its_source_what_is_compared_and_why_the_tolerance(name):
         ("contact_states", "normal.csv", "contact_normal.csv"),
         ("contact_states", "lobes.csv", "contact_normal_lobes.csv"),
         ("creep_laws", "contact_creep.csv", "contact_creep.csv"),
+        ("creep_with_spin", "contact_flange_creep.csv", "contact_flange_creep.csv"),
         ("kalker_coefficients", "kalker_table.csv", "kalker_table.csv"),
         (
             "kalker_coefficients",
@@ -66,6 +67,13 @@ def test_docs_state_each_creep_laws_error_as_it_is_held():
     lines = (DOCS / "theory" / "creep.md").read_text().splitlines()
     for law, bounds in toml(numbers_beside("creep_laws", "bounds.toml")).items():
         cells = f"| {bounds['none']:.3f} | {bounds['spin']:.3f} |"
+        assert any(line.startswith(f'| `"{law}"`') and cells in line for line in lines), law
+
+
+def test_docs_state_each_creep_laws_error_on_flanges_as_it_is_held():
+    lines = (DOCS / "theory" / "creep.md").read_text().splitlines()
+    for law, bounds in toml(numbers_beside("creep_with_spin", "bounds.toml")).items():
+        cells = " | ".join(f"{value:.3f}" for value in bounds.values())
         assert any(line.startswith(f'| `"{law}"`') and cells in line for line in lines), law
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from scipy.interpolate import PchipInterpolator
 
 from railquake.errors import InputError
 from railquake.files import whole_file
+from railquake.laws import CREEP_LAWS
 from railquake.march.compiler import SCALAR, bind, cache_folder, source_hash
 from railquake.memory import Bounded
 from railquake.physics.contact_table import FIELDS, Axis, axis_nodes, fill_table
@@ -20,7 +22,7 @@ if TYPE_CHECKING:
     from railquake.inputs.profile import Profile
     from railquake.inputs.wheelrail import WheelRail
 
-__all__ = ["FLOOR", "ROLL_AXIS", "SHIFT_AXIS", "build_geometry", "with_table"]
+__all__ = ["FLOOR", "ROLL_AXIS", "SHIFT_AXIS", "build_geometry", "law_table", "with_table"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -80,8 +82,13 @@ def build_geometry(wheelrail: WheelRail) -> Geometry:
         hertz.area,
         hertz.creep,
         hertz.spin,
+        np.log(hertz.a_over_b),
         np.zeros(1),
         len(axis_nodes(SHIFT_AXIS)),
+        *(
+            law_table(law, wheelrail.poisson_ratio)
+            for law in (wheelrail.creep_law, wheelrail.flange_creep_law)
+        ),
     )
 
 
@@ -149,14 +156,41 @@ def with_table(geometry: Geometry) -> Geometry:
     return geometry._replace(table=_TABLES.get(key, lambda: _table(key, geometry)))
 
 
-_TABLES: Bounded[str, Array] = Bounded(8)
+def law_table(name: str, poisson: float) -> Array:
+    """The table of a creep law for a material; one number where the law has none.
+
+    Its key is the law, its nodes and the physics' source.
+    """
+    law = CREEP_LAWS[name]
+    if law.table is None:
+        return np.zeros(1)
+    nodes = law.table.nodes(poisson)
+    digest = hashlib.sha256(f"{source_hash()} {name} {law.table.size}".encode())
+    digest.update(np.ascontiguousarray(nodes).tobytes())
+    key = digest.hexdigest()
+
+    def fill(table: Array) -> None:
+        bind(law.table.fill, SCALAR).call(nodes, table)
+
+    return _TABLES.get(key, lambda: _kept(key, law.table.size, fill))
+
+
+_TABLES: Bounded[str, Array] = Bounded(12)
 
 
 def _table(digest: str, geometry: Geometry) -> Array:
-    """The table from the cache on disk, or made now and kept there."""
-    path = cache_folder() / "tables" / f"{digest[:32]}.npy"
+    """The contact table from the cache on disk, or made now and kept there."""
     shifts, rolls = axis_nodes(SHIFT_AXIS), axis_nodes(ROLL_AXIS)
-    size = len(shifts) * len(rolls) * 2 * FIELDS
+
+    def fill(table: Array) -> None:
+        bind(fill_table, SCALAR).call(shifts, rolls, geometry, table)
+
+    return _kept(digest, len(shifts) * len(rolls) * 2 * FIELDS, fill)
+
+
+def _kept(digest: str, size: int, fill: Callable[[Array], None]) -> Array:
+    """A table from the cache on disk, or made now and kept there."""
+    path = cache_folder() / "tables" / f"{digest[:32]}.npy"
     try:
         table: Array = np.load(path, allow_pickle=False)
         if table.shape == (size,) and table.dtype == np.float64:
@@ -164,11 +198,11 @@ def _table(digest: str, geometry: Geometry) -> Array:
     except (OSError, ValueError):
         pass  # absent or damaged: made again
     table = np.empty(size)
-    bind(fill_table, SCALAR).call(shifts, rolls, geometry, table)
+    fill(table)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with whole_file(path) as part, part.open("wb") as file:
             np.save(file, table)
     except OSError:
-        pass  # a cache that cannot be written costs a second in each process, nothing more
+        pass  # a cache that cannot be written costs seconds in each process, nothing more
     return table

@@ -249,6 +249,7 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
     layout = _layout(structure, vehicle)
     choices = {
         "creep law": scenario.wheelrail.creep_law,
+        "flange creep law": scenario.wheelrail.flange_creep_law,
         "restitution law": scenario.wheelrail.restitution_law,
         "hinge law": structure.hinge,
         "structure": structure.choice,

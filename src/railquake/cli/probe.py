@@ -202,23 +202,35 @@ def probe_contact(
         )
 
 
+def _two_lengths(semi_axes: str) -> tuple[float, float]:
+    """Semi-axes as the command line has them, m."""
+    try:
+        a, b = (float(part) for part in semi_axes.split(","))
+    except ValueError:
+        raise InputError(
+            f'--semi-axes: two numbers in m are needed, such as 6e-3,5e-3; found "{semi_axes}"'
+        ) from None
+    return a, b
+
+
 @probe_app.command("creep")
 def probe_creep(
     semi_axes: Annotated[str, typer.Option(help="a,b in m; a along the rolling direction.")],
     load: Annotated[float, typer.Option(help="Normal force, N.")],
     creepage: Annotated[float, typer.Option(help="Lateral, wheel relative to rail.")] = 0.0,
+    longitudinal: Annotated[float, typer.Option(help="Longitudinal creepage, likewise.")] = 0.0,
     spin: Annotated[float, typer.Option(help="1/m.")] = 0.0,
     mu: Annotated[float, typer.Option(help="Coefficient of friction.")] = 0.3,
     shear_modulus: Annotated[float, typer.Option(help="Pa.")] = 82e9,
     poisson: Annotated[float, typer.Option(help="Poisson's ratio.")] = 0.28,
-    law: Annotated[str, typer.Option(help="coulomb, she, carter or polach.")] = "she",
+    law: Annotated[str, typer.Option(help="coulomb, she, carter, polach or fastsim.")] = "she",
     picture: Annotated[
         Path | None,
         typer.Option("--picture", "--curve", help="Picture (PNG): force against creepage."),
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Lateral creep force on the wheel; it opposes the creepage.
+    """Creep force on the wheel; it opposes the creepage.
 
     Example: railquake probe creep --semi-axes 6e-3,5e-3 --load 50e3 --creepage 1e-3
     """
@@ -227,12 +239,7 @@ def probe_creep(
     from railquake.laws import CREEP_LAWS
     from railquake.probe import creep_force
 
-    try:
-        a, b = (float(part) for part in semi_axes.split(","))
-    except ValueError:
-        raise InputError(
-            f'--semi-axes: two numbers in m are needed, such as 6e-3,5e-3; found "{semi_axes}"'
-        ) from None
+    a, b = _two_lengths(semi_axes)
     if law not in CREEP_LAWS:
         raise InputError(f'--law: no law is called "{law}"; take one of {", ".join(CREEP_LAWS)}')
     for name, value in (
@@ -245,14 +252,31 @@ def probe_creep(
             raise InputError(f"{name}: must be positive and finite, found {value:g}")
     if not 0.0 <= poisson < 0.5:
         raise InputError(f"--poisson: must be from 0 to below 0.5, found {poisson:g}")
-    if not (math.isfinite(creepage) and math.isfinite(spin)):
-        raise InputError("--creepage and --spin must be finite numbers")
-    force, slope = creep_force((a, b), load, creepage, spin, mu, shear_modulus, poisson, law)
+    creepages = (longitudinal, creepage, spin)
+    if not all(map(math.isfinite, creepages)):
+        raise InputError("--longitudinal, --creepage and --spin must be finite numbers")
+    found = creep_force((a, b), load, creepages, mu, shear_modulus, poisson, law)
     if picture is not None:
         from railquake.plots import write_creep_picture
 
-        write_file(picture, lambda path: write_creep_picture(slope, mu * load, path))
+        write_file(
+            picture,
+            lambda path: write_creep_picture(
+                found.f22, mu * load, path, log_ratio=math.log(a / b), poisson=poisson
+            ),
+        )
     if as_json:
-        print_json({"lateral_force_n": force, "limit_n": mu * load, "f22_n": slope, "law": law})
+        print_json(
+            {
+                "lateral_force_n": found.lateral,
+                "longitudinal_force_n": found.longitudinal,
+                "limit_n": mu * load,
+                "f22_n": found.f22,
+                "law": law,
+            }
+        )
         return
-    typer.echo(f"lateral force {force:.6g} N, {abs(force) / (mu * load):.4f} of friction's limit")
+    for name, force in (("lateral", found.lateral), ("longitudinal", found.longitudinal)):
+        if name == "lateral" or longitudinal != 0.0:
+            share = abs(force) / (mu * load)
+            typer.echo(f"{name} force {force:.6g} N, {share:.4f} of friction's limit")

@@ -198,6 +198,11 @@ class WheelRail(FromPreset):
         KnownLaw(CREEP_LAWS),
         Field(description="How Kalker's linear forces saturate (she: Shen-Hedrick-Elkins)"),
     ] = "she"
+    flange_creep_law: Annotated[
+        str,
+        KnownLaw(CREEP_LAWS),
+        Field(description="The same on flanges, whose spin is large (fastsim: a law for that)"),
+    ] = "fastsim"
     reference_roll: Annotated[
         PositiveAngle, Field(description="Relative roll at which slide-off begins [rad]")
     ]

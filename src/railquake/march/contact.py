@@ -23,9 +23,11 @@ from railquake.physics.profiles import POSITIVE, Geometry, Patch, zone_contact
 __all__ = [
     "add_wheels",
     "any_flange_near",
+    "bearing_flanges",
     "clear_forces",
     "closed_patch",
     "evaluated_patch",
+    "every_flange",
     "every_flange_near",
     "fetch_cells",
     "fetch_polynomials",
@@ -38,6 +40,7 @@ __all__ = [
     "patch",
     "patch_by_grid",
     "patch_by_table",
+    "press_flange",
     "press_patch",
 ]
 
@@ -231,20 +234,59 @@ def evaluated_patch(
     S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int
 ) -> None:
     """Many abreast evaluate open patches all the same."""
-    add_patch(S, Q, side, zone, patch(S, Q, geometry, side, zone, lane), lane)
+    add_patch(S, Q, geometry, side, zone, patch(S, Q, geometry, side, zone, lane), lane)
 
 
 def closed_patch(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: int) -> None:
     """For one scenario an open patch costs nothing."""
     found = patch(S, Q, geometry, side, zone, lane)
     if S[state.HEIGHT, lane] > found.gap:
-        add_patch(S, Q, side, zone, found, lane)
+        add_patch(S, Q, geometry, side, zone, found, lane)
     else:
         S[state.PATCH_PENETRATION + 2 * side + zone, lane] = S[state.HEIGHT, lane] - found.gap
         S[state.PATCH_HYSTERESIS + 2 * side + zone, lane] = 0.0
 
 
-def add_patch(S: Array, Q: Array, side: int, zone: int, found: Patch, lane: int) -> None:
+def press_flange(S: Array, Q: Array, geometry: Geometry, side: int, lanes: int) -> None:
+    """Slot of the engine: contact forces of a side's flange in every lane."""
+    raise NotImplementedError("an engine is chosen when a kernel is bound")
+
+
+def every_flange(S: Array, Q: Array, geometry: Geometry, side: int, lanes: int) -> None:
+    """Lane by lane."""
+    for lane in range(lanes):
+        press_patch(S, Q, geometry, side, 1, lane)
+
+
+def bearing_flanges(S: Array, Q: Array, geometry: Geometry, side: int, lanes: int) -> None:
+    """All gaps by vectors, then one by one the flanges that bear.
+
+    The numbers of a law's table come singly from memory, whatever a vector unit can do, and few
+    flanges bear at a time.
+    """
+    number = 2 * side + 1
+    for lane in range(lanes):
+        gap = patch(S, Q, geometry, side, 1, lane).gap
+        penetration = S[state.NEAR + side, lane] * (S[state.HEIGHT, lane] - gap)
+        S[state.PATCH_PENETRATION + number, lane] = penetration
+        held = S[state.PATCH_HYSTERESIS + number, lane]
+        S[state.PATCH_HYSTERESIS + number, lane] = held if penetration > 0.0 else 0.0
+    lane = next_bearing(S, number, 0, lanes)
+    while lane < lanes:
+        press_patch(S, Q, geometry, side, 1, lane)
+        lane = next_bearing(S, number, lane + 1, lanes)
+
+
+def next_bearing(S: Array, number: int, lane: int, lanes: int) -> int:
+    """First lane from ``lane`` on in which a patch bears; ``lanes`` where none does."""
+    while lane < lanes and not S[state.PATCH_PENETRATION + number, lane] > 0.0:
+        lane += 1
+    return lane
+
+
+def add_patch(
+    S: Array, Q: Array, geometry: Geometry, side: int, zone: int, found: Patch, lane: int
+) -> None:
     """Forces of a patch whose gap and contact data are known."""
     sign = 2.0 * side - 1.0
     number = 2 * side + zone
@@ -258,6 +300,8 @@ def add_patch(S: Array, Q: Array, side: int, zone: int, found: Patch, lane: int)
         motion,
         S[state.PATCH_HYSTERESIS + number, lane],
         read_contact(Q, constant.CONTACT, lane),
+        zone,
+        geometry.flange_law if zone == 1 else geometry.tread_law,
     )
     S[state.PATCH_PENETRATION + number, lane] = penetration
     S[state.PATCH_HYSTERESIS + number, lane] = forces.hysteresis

@@ -15,6 +15,7 @@ from railquake.laws import CREEP_LAWS, HINGE_LAWS, RESTITUTION_LAWS, Family
 from railquake.march import contact, frames, ground, structure, track
 from railquake.march.packing import reader, writer
 from railquake.physics import creep, elementary, hinge, impact
+from railquake.physics.creep import CreepLaw
 from railquake.physics.hinge import HingeLaw
 
 __all__ = ["SLOTS", "Slot", "chosen", "solving"]
@@ -72,6 +73,14 @@ def _fixed(name: str, decided_by: str, choices: Mapping[str, Laws]) -> Slot:
     return Slot(name, decided_by, functions, choices.__getitem__, lambda: tuple(choices))
 
 
+def _creep(law: CreepLaw, saturation: Law, bound: Law) -> Laws:
+    """A law that bounds the magnitude, or all by itself."""
+    if law.bound is not None:
+        return {bound: law.bound}
+    assert law.saturation is not None  # a law has one of the two
+    return {saturation: law.saturation}
+
+
 def _hinge(law: HingeLaw) -> Laws:
     state = type(law.virgin)
     return {
@@ -109,6 +118,7 @@ _ABREAST: Laws = {
     frames.look_again: frames.look_again_abreast,
     contact.flange_near: contact.any_flange_near,
     contact.press_patch: contact.evaluated_patch,
+    contact.press_flange: contact.bearing_flanges,
     # what a vector unit can do
     elementary.exponential: elementary.exponential_polynomial,
     elementary.power: elementary.power_polynomial,
@@ -117,6 +127,7 @@ _ALONE: Laws = {
     frames.look_again: frames.nothing_again,
     contact.flange_near: contact.every_flange_near,
     contact.press_patch: contact.closed_patch,
+    contact.press_flange: contact.every_flange,
 }
 
 SLOTS: tuple[Slot, ...] = (
@@ -124,8 +135,15 @@ SLOTS: tuple[Slot, ...] = (
         "creep law",
         "`wheelrail.creep_law`",
         CREEP_LAWS,
-        (creep.saturation,),
-        lambda law: {creep.saturation: law.saturation},
+        (creep.saturation, creep.bound_on_tread),
+        lambda law: _creep(law, creep.saturation, creep.bound_on_tread),
+    ),
+    _family(
+        "flange creep law",
+        "`wheelrail.flange_creep_law`",
+        CREEP_LAWS,
+        (creep.flange_saturation, creep.bound_on_flange),
+        lambda law: _creep(law, creep.flange_saturation, creep.bound_on_flange),
     ),
     _family(
         "restitution law",
@@ -155,7 +173,11 @@ SLOTS: tuple[Slot, ...] = (
         {
             "alone": _ALONE,
             "abreast": _ABREAST,
-            "device": {**_ABREAST, contact.press_patch: contact.closed_patch},
+            "device": {
+                **_ABREAST,
+                contact.press_patch: contact.closed_patch,
+                contact.press_flange: contact.every_flange,
+            },
         },
     ),
 )

@@ -14,6 +14,7 @@ from railquake.march.contact import (
     fetch_cells,
     flange_near,
     locate_cells,
+    press_flange,
     press_patch,
 )
 from railquake.march.ground import move_ground
@@ -131,12 +132,6 @@ def press_treads(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
         clear_forces(S, lane)
         press_patch(S, Q, geometry, 0, 0, lane)
         press_patch(S, Q, geometry, 1, 0, lane)
-
-
-def press_flange(S: Array, Q: Array, geometry: Geometry, side: int, lanes: int) -> None:
-    """Contact forces of a flange."""
-    for lane in range(lanes):
-        press_patch(S, Q, geometry, side, 1, lane)
 
 
 def carry_suspension(S: Array, lanes: int) -> None:

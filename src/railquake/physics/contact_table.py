@@ -136,6 +136,10 @@ class Polynomials(NamedTuple):
     spin_1: float
     spin_2: float
     spin_3: float
+    log_ratio: float
+    log_ratio_1: float
+    log_ratio_2: float
+    log_ratio_3: float
 
 
 def cell_polynomials(
@@ -177,10 +181,12 @@ def cell_polynomials(
     k_0, k_1, k_2, k_3 = bilinear(table[c00 + 4], table[c10 + 4], table[c01 + 4], table[c11 + 4])
     f_0, f_1, f_2, f_3 = bilinear(table[c00 + 5], table[c10 + 5], table[c01 + 5], table[c11 + 5])
     s_0, s_1, s_2, s_3 = bilinear(table[c00 + 6], table[c10 + 6], table[c01 + 6], table[c11 + 6])
+    r_0, r_1, r_2, r_3 = bilinear(table[c00 + 7], table[c10 + 7], table[c01 + 7], table[c11 + 7])
     return Polynomials(
         low[0], low[1], low[2], low[3], low_0, low_1,
         gap_20, gap_21, gap_22, gap_23, gap_30, gap_31, gap_32, gap_33,
         z_0, z_1, z_2, z_3, k_0, k_1, k_2, k_3, f_0, f_1, f_2, f_3, s_0, s_1, s_2, s_3,
+        r_0, r_1, r_2, r_3,
     )  # fmt: skip
 
 
@@ -231,6 +237,7 @@ def patch_in_cell(
         blend(w, w_roll, cell.stiffness, cell.stiffness_1, cell.stiffness_2, cell.stiffness_3),
         blend(w, w_roll, cell.creep, cell.creep_1, cell.creep_2, cell.creep_3),
         blend(w, w_roll, cell.spin, cell.spin_1, cell.spin_2, cell.spin_3),
+        blend(w, w_roll, cell.log_ratio, cell.log_ratio_1, cell.log_ratio_2, cell.log_ratio_3),
     )
 
 
@@ -242,7 +249,7 @@ def fill_table(shifts: Array, rolls: Array, geometry: Geometry, table: Array) ->
             for zone in range(2):
                 first = geometry.flange_points if zone == 0 else 0
                 last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
-                gap, slope, gap_psi, height, stiffness, f22, f23 = zone_contact(
+                gap, slope, gap_psi, height, stiffness, f22, f23, ratio = zone_contact(
                     shifts[j], rolls[i], first, last, geometry
                 )
                 place = base + zone * FIELDS
@@ -253,3 +260,4 @@ def fill_table(shifts: Array, rolls: Array, geometry: Geometry, table: Array) ->
                 table[place + 4] = stiffness
                 table[place + 5] = f22
                 table[place + 6] = f23
+                table[place + 7] = ratio

@@ -115,15 +115,16 @@ def hertz_lookup(
     area: Array,
     creep: Array,
     spin: Array,
-) -> tuple[float, float, float]:
+    log_ratio: Array,
+) -> tuple[float, float, float, float]:
     """Hertz stiffness and creep coefficients of one wheel's contact.
 
     Parameters
     ----------
     lateral, rolling : float
         Relative curvatures A and B, 1/m, both positive.
-    stiffness, area, creep, spin : array
-        Columns of `HertzTable`.
+    stiffness, area, creep, spin, log_ratio : array
+        Columns of `HertzTable`, and the logarithm of the last.
 
     Returns
     -------
@@ -131,6 +132,7 @@ def hertz_lookup(
         N/m^1.5.
     f22 / delta, f23 / delta^1.5 : float
         Kalker's linear coefficients per indentation: a b is proportional to delta.
+    log(a/b) : float
     """
     total = lateral + rolling
     place = math.acos((rolling - lateral) / total) * ((len(stiffness) - 1) / math.pi)
@@ -140,4 +142,4 @@ def hertz_lookup(
     ab = ((1.0 - w) * area[cell] + w * area[cell + 1]) / total
     f22 = ((1.0 - w) * creep[cell] + w * creep[cell + 1]) * ab
     f23 = ((1.0 - w) * spin[cell] + w * spin[cell + 1]) * ab * math.sqrt(ab)
-    return k, f22, f23
+    return k, f22, f23, (1.0 - w) * log_ratio[cell] + w * log_ratio[cell + 1]

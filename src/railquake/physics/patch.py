@@ -6,13 +6,18 @@ generalised forces on the wheelset they are the gradient of the gap and its tran
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from railquake.physics.creep import linear_force, saturation
+import numpy as np
+
+from railquake.physics.creep import bound_on_flange, bound_on_tread, linear_force
 from railquake.physics.impact import hysteresis, normal_force
 from railquake.physics.profiles import Patch
 
 __all__ = ["Contact", "PatchForces", "WheelMotion", "closing_rate", "patch_forces"]
+
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
 
 
 class WheelMotion(NamedTuple):
@@ -54,7 +59,13 @@ def closing_rate(patch: Patch, motion: WheelMotion) -> float:
 
 
 def patch_forces(
-    penetration: float, patch: Patch, motion: WheelMotion, held: float, contact: Contact
+    penetration: float,
+    patch: Patch,
+    motion: WheelMotion,
+    held: float,
+    contact: Contact,
+    zone: int,
+    table: Array,
 ) -> PatchForces:
     """Forces of one wheel's patch on the wheelset (Eqs. 5 to 8).
 
@@ -67,6 +78,10 @@ def patch_forces(
     held : float
         chi/K of this contact so far, s/m; 0 while open.
     contact : Contact
+    zone : int
+        0: tread, 1: flange; each has its creep law.
+    table : array
+        Of that law, where it has one.
     """
     slope = patch.slope
     cos_gamma = 1.0 / math.sqrt(1.0 + slope * slope)
@@ -83,16 +98,18 @@ def patch_forces(
     # angle from the axle: sin(gamma - psi)
     sine = cos_gamma * (slope * motion.roll_cos - motion.roll_sin)
     linear = linear_force(
+        0.0,
         patch.creep * delta,
         patch.spin * delta * math.sqrt(delta),
-        sliding,
-        contact.inverse_speed,
-        sine,
+        (0.0, sliding * contact.inverse_speed, sine),
     )
-    factor = saturation(linear.creep + linear.spin, contact.friction * normal)
-    tangential = factor * (linear.creep + linear.spin)
+    limit = contact.friction * normal
+    if zone == 1:
+        force = bound_on_flange(linear, limit, patch.log_ratio, table)
+    else:
+        force = bound_on_tread(linear, limit, patch.log_ratio, table)
     down = normal * cos_gamma
-    across = tangential * cos_gamma
+    across = (force.creep + force.spin) * cos_gamma
     return PatchForces(
         held,
         down * slope + across,
@@ -100,6 +117,6 @@ def patch_forces(
         down * patch.gap_psi + across * (slope * arm_y - arm_z),
         0.4 * elastic * delta,
         (normal - elastic) * rate,
-        -factor * linear.creep * sliding,
-        factor * linear.spin * sliding,
+        -force.creep * sliding,
+        force.spin * sliding,
     )

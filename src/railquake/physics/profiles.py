@@ -57,7 +57,8 @@ class Geometry(NamedTuple):
     lateral place, height below the axle, their derivatives by the point's number, curvature
     (convex positive).  Points before ``flange_points`` belong to the flange zone.  ``rail_*`` are
     evenly spaced by ``rail_step`` from ``rail_start`` in track axes; ``rail_slope`` is dz/dy.
-    ``table`` is that of `contact_table`, with ``shift_nodes`` nodes of the shift.
+    ``table`` is that of `contact_table`, with ``shift_nodes`` nodes of the shift; ``tread_law`` and
+    ``flange_law`` are those of the creep laws.
     """
 
     wheel_y: Array
@@ -75,8 +76,11 @@ class Geometry(NamedTuple):
     hertz_area: Array
     hertz_creep: Array
     hertz_spin: Array
+    hertz_log_ratio: Array
     table: Array
     shift_nodes: int
+    tread_law: Array
+    flange_law: Array
 
 
 class Extremum(NamedTuple):
@@ -102,6 +106,7 @@ class Patch(NamedTuple):
     stiffness: float  # K, N/m^1.5
     creep: float  # f22/delta, N/m
     spin: float  # f23/(delta^1.5 r), r the local rolling radius
+    log_ratio: float  # log(a/b), semi-axes along and across the rolling direction
 
 
 def hermite_coefficients(
@@ -207,16 +212,24 @@ def zone_contact(shift: float, psi: float, first: int, last: int, geometry: Geom
     Parameters are those of `zone_extremum`.
     """
     found = zone_extremum(shift, psi, first, last, geometry)
-    stiffness, f22, f23 = hertz_lookup(
+    stiffness, f22, f23, log_ratio = hertz_lookup(
         found.lateral,
         found.rolling,
         geometry.hertz_stiffness,
         geometry.hertz_area,
         geometry.hertz_creep,
         geometry.hertz_spin,
+        geometry.hertz_log_ratio,
     )
     return Patch(
-        found.gap, found.slope, found.gap_psi, found.rail_z, stiffness, f22, f23 / found.radius
+        found.gap,
+        found.slope,
+        found.gap_psi,
+        found.rail_z,
+        stiffness,
+        f22,
+        f23 / found.radius,
+        log_ratio,
     )
 
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from railquake.physics.creep import CREEP_LAWS
+from railquake.assembly.geometry import law_table
+from railquake.physics.creep import CREEP_LAWS, LinearForce, bounded_force
 from railquake.plots.style import (
     BLACK,
     BLUE,
@@ -25,7 +26,9 @@ from railquake.plots.style import (
 __all__ = ["write_creep_picture"]
 
 
-def write_creep_picture(slope: float, limit: float, path: Path) -> Path:
+def write_creep_picture(
+    slope: float, limit: float, path: Path, log_ratio: float = 0.0, poisson: float = 0.28
+) -> Path:
     """Draw all laws: force over mu N against the lateral creepage, without spin.
 
     Parameters
@@ -36,6 +39,10 @@ def write_creep_picture(slope: float, limit: float, path: Path) -> Path:
         mu N, N.
     path : Path
         PNG to write.
+    log_ratio : float
+        log(a/b) of the ellipse.
+    poisson : float
+        Poisson's ratio.
 
     Returns
     -------
@@ -49,11 +56,18 @@ def write_creep_picture(slope: float, limit: float, path: Path) -> Path:
         "she": ("Shen-Hedrick-Elkins", BLUE, "-"),
         "carter": ("Carter", ORANGE, "--"),
         "polach": ("Polach", GREEN, "-."),
+        "fastsim": ("Kalker, simplified", RED, "--"),
     }
     for law in dict.fromkeys((*styles, *CREEP_LAWS)):
         name, colour, dashes = styles.get(law, (law, RED, ":"))
-        saturation = CREEP_LAWS[law].saturation
-        force = [slope * xi * saturation(slope * xi, limit) / limit for xi in creepage]
+        table = law_table(law, poisson)
+        force = [
+            bounded_force(
+                CREEP_LAWS[law], LinearForce(0.0, slope * xi, 0.0), limit, log_ratio, table
+            ).creep
+            / limit
+            for xi in creepage
+        ]
         ax.plot(1e3 * creepage, force, color=colour, linestyle=dashes, linewidth=1.6, label=name)
     start = np.array([0.0, 1.15 * limit / slope])
     ax.plot(1e3 * start, slope * start / limit, color=BLACK, linewidth=0.8, linestyle=":",

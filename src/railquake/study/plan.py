@@ -129,6 +129,7 @@ def kernel_key(scenario: Scenario) -> tuple[Any, ...]:
         len(scenario.vehicle.bodies),
         track.wheel, track.rail, track.running_circle, track.rail_centre, track.gauge,
         track.rolling_radius, track.youngs_modulus, track.poisson_ratio, track.creep_law,
+        track.flange_creep_law,
         solver.dt, solver.history_step, solver.contact, solver.hinge_solve,
     )  # fmt: skip
 

@@ -117,9 +117,9 @@ def patches(
     pair = geometry()
     zones = []
     for (first, last), offset in zip(_zones(pair), (0.0, flange_offset), strict=True):
-        gap, slope, _, _, stiffness, _, _ = zone_contact(-shift, 0.0, first, last, pair)
+        found = zone_contact(-shift, 0.0, first, last, pair)
         place = zone_extremum(-shift, 0.0, first, last, pair)[3]
-        zones.append((gap + offset, math.atan(slope), stiffness, place))
+        zones.append((found.gap + offset, math.atan(found.slope), found.stiffness, place))
 
     def forces(height: float) -> list[float]:
         return [k * max((height - g) * math.cos(angle), 0.0) ** 1.5 for g, angle, k, _ in zones]

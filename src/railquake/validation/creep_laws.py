@@ -51,10 +51,10 @@ def forces(law: str) -> Any:
         *(table[name] for name in ("N_kN", "a_mm", "b_mm", "upsilon_y", "phi_1_per_m")),
         strict=True,
     ):
-        force, _ = creep_force(
-            (1e-3 * a, 1e-3 * b), 1e3 * load, creepage, spin, FRICTION, SHEAR, POISSON, law
+        force = creep_force(
+            (1e-3 * a, 1e-3 * b), 1e3 * load, (0.0, creepage, spin), FRICTION, SHEAR, POISSON, law
         )
-        found.append(force / (FRICTION * 1e3 * load))
+        found.append(force.lateral / (FRICTION * 1e3 * load))
     return np.array(found)
 
 
@@ -156,7 +156,7 @@ def write_picture(path: Path) -> Path:
         upper, lower = axes[0][column], axes[1][column]
         for law, colour in colours.items():
             curve = [
-                -creep_force(axes_m, 1e3 * load, u, spin, FRICTION, SHEAR, POISSON, law)[0]
+                -creep_force(axes_m, 1e3 * load, (0.0, u, spin), FRICTION, SHEAR, POISSON, law)[0]
                 / (FRICTION * 1e3 * load)
                 for u in smooth
             ]

@@ -53,15 +53,16 @@ def _at_table() -> list[Result]:
 
 
 def probed(a: float, b: float) -> dict[str, float]:
-    """C22 and C23 from the force of the public probe, semi-axes in m; C11 from the law's own."""
+    """The coefficients from the forces of the public probe, semi-axes in m."""
     load, friction = 50e3, 0.3
-    sideways, _ = creep_force((a, b), load, TINY, 0.0, friction, SHEAR, POISSON, "she")
-    spinning, _ = creep_force((a, b), load, 0.0, TINY, friction, SHEAR, POISSON, "she")
-    c11, _, _ = kalker_coefficients(np.array([a / b]), POISSON)
+    along, sideways, spinning = (
+        creep_force((a, b), load, tuple(TINY * unit), friction, SHEAR, POISSON, "she")
+        for unit in np.eye(3)
+    )
     return {
-        "C11": float(c11[0]),
-        "C22": -sideways / (SHEAR * a * b * TINY),
-        "C23": -spinning / (SHEAR * (a * b) ** 1.5 * TINY),
+        "C11": -along.longitudinal / (SHEAR * a * b * TINY),
+        "C22": -sideways.lateral / (SHEAR * a * b * TINY),
+        "C23": -spinning.lateral / (SHEAR * (a * b) ** 1.5 * TINY),
     }
 
 

@@ -24,6 +24,7 @@ COMPARISONS: tuple[str, ...] = (
     "normal_law",
     "kalker_coefficients",
     "creep_laws",
+    "creep_with_spin",
     # classical cases with closed forms
     "classical_free_vibration",
     "classical_resonance",

@@ -26,8 +26,12 @@ def test_hertz_of_a_wheel_on_a_rail_crown():
     """physics.md, section 2, Eq. 6: 50 kN, radii 460 and 300 mm."""
     rolling, lateral = 0.5 / 0.460, 0.5 / 0.300
     table = hertz_table(*STEEL)
-    k, _, _ = hertz_lookup(lateral, rolling, table.stiffness, table.area, table.creep, table.spin)
+    k, _, _, log_ratio = hertz_lookup(
+        lateral, rolling, table.stiffness, table.area, table.creep, table.spin,
+        np.log(table.a_over_b),
+    )  # fmt: skip
     assert k == pytest.approx(9.290e10, rel=1e-3)
+    assert log_ratio == pytest.approx(math.log(5.709 / 4.294), rel=1e-3)
     assert (50e3 / k) ** (2.0 / 3.0) == pytest.approx(0.06616e-3, rel=1e-3)
     theta = np.array([math.acos((rolling - lateral) / (rolling + lateral))])
     m, n, _ = hertz_coefficients(theta)

@@ -11,7 +11,7 @@ from railquake.physics.creep import CREEP_LAWS
 from railquake.physics.creep.kalker import kalker_coefficients
 from railquake.probe import creep_force
 
-LAWS = sorted(CREEP_LAWS)
+LAWS = sorted(name for name in CREEP_LAWS if CREEP_LAWS[name].saturation is not None)
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.25, 0.5])
@@ -87,10 +87,10 @@ def test_shen_hedrick_elkins_slides_from_three_times_the_limit():
     assert 1.5 * factor(1.5, 1.0) == pytest.approx(1.5 - 0.75 + 0.125, rel=1e-12)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", sorted(CREEP_LAWS))
 def test_force_stays_within_its_stated_deviation_from_contact(shared, law):
     """Each law's largest deviation without spin, as the theory page states it (F over mu N)."""
-    stated = {"she": 0.03, "coulomb": 0.26, "carter": 0.045, "polach": 0.055}
+    stated = {"she": 0.03, "coulomb": 0.26, "carter": 0.045, "polach": 0.055, "fastsim": 0.038}
     with open(shared / "oracles" / "contact_creep.csv") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     worst = 0.0
@@ -99,6 +99,7 @@ def test_force_stays_within_its_stated_deviation_from_contact(shared, law):
             continue
         load = 1e3 * float(row["N_kN"])
         axes = (1e-3 * float(row["a_mm"]), 1e-3 * float(row["b_mm"]))
-        force, _ = creep_force(axes, load, float(row["upsilon_y"]), 0.0, 0.3, 82e9, 0.28, law)
+        creepages = (0.0, float(row["upsilon_y"]), 0.0)
+        force = creep_force(axes, load, creepages, 0.3, 82e9, 0.28, law).lateral
         worst = max(worst, abs(force / (0.3 * load) - float(row["Fy_over_muN"])))
     assert worst < stated[law]

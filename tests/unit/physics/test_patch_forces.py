@@ -1,6 +1,7 @@
 """Forces of one patch: what they do to the wheel is what is stored, lost, crept and spun."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,11 @@ from railquake.physics.patch import Contact, WheelMotion
 from railquake.physics.profiles import Patch
 
 K, CREEP, SPIN = 9e10, 6e10, 4e11  # of the order of the presets'
-LAWS = chosen({"creep law": "she", "restitution law": "hunt-crossley"})
+LAWS = chosen(
+    {"creep law": "she", "flange creep law": "carter", "restitution law": "hunt-crossley"}
+)
+NO_TABLE = np.zeros(1)
+GEOMETRY = SimpleNamespace(tread_law=NO_TABLE, flange_law=NO_TABLE)
 bound_forces = bind(patch.patch_forces, PYTHON, LAWS).call
 bear = bind(add_patch, PYTHON, LAWS).call
 CLOSED, OPEN = st.floats(1e-7, 3e-4), st.floats(-1e-2, 0.0)  # penetration, m
@@ -44,20 +49,23 @@ def patches(draw, penetration=CLOSED):
         "onset_bound": 0.1,
         "friction": draw(st.sampled_from([0.0, 0.3])),
         "inverse_speed": draw(st.sampled_from([1.0, 1.0 / 22.0])),
+        "zone": draw(st.sampled_from([0, 1])),
     }
 
 
 def patch_forces(
     penetration, slope, gap_psi, arm_z, stiffness, creep, spin, shift_v, height_v, roll_v,
-    roll_sin, roll_cos, hysteresis, alpha_r, onset_bound, friction, inverse_speed,
+    roll_sin, roll_cos, hysteresis, alpha_r, onset_bound, friction, inverse_speed, zone=0,
 ):  # fmt: skip
     """The forces, with the wheelset's centre at the height of the track's origin."""
     return bound_forces(
         penetration,
-        Patch(0.0 - penetration, slope, gap_psi, arm_z, stiffness, creep, spin),
+        Patch(0.0 - penetration, slope, gap_psi, arm_z, stiffness, creep, spin, 0.0),
         WheelMotion(0.0, shift_v, height_v, roll_v, roll_sin, roll_cos),
         hysteresis,
         Contact(alpha_r, onset_bound, friction, inverse_speed),
+        zone,
+        NO_TABLE,
     )
 
 
@@ -134,10 +142,10 @@ def test_patches_of_a_wheel_add_up_for_all_axles_in_the_tracks_axes(side):
     expected = np.zeros(7)
     for zone, (slope, gap_psi, sunk) in enumerate(((0.01, -0.87, 6e-5), (-0.9, -0.5, 4e-5))):
         gap, rail_z = -0.39 - sunk, 0.001 + 0.004 * zone
-        bear(s, q, side, zone, Patch(gap, slope, gap_psi, rail_z, K, CREEP, SPIN), 0)
+        bear(s, q, GEOMETRY, side, zone, Patch(gap, slope, gap_psi, rail_z, K, CREEP, SPIN, 0.0), 0)
         one = patch_forces(
             sunk, slope, gap_psi, rail_z + 0.39, K, CREEP, SPIN, sign * 0.02, 0.03, sign * -0.04,
-            sign * math.sin(psi), math.cos(psi), 0.0, 0.45, 0.1, 0.3, 1.0 / 22.0,
+            sign * math.sin(psi), math.cos(psi), 0.0, 0.45, 0.1, 0.3, 1.0 / 22.0, zone,
         )  # fmt: skip
         _, y, z, turning, *powers = one
         expected += 4.0 * np.array([sign * y, z, sign * turning, *powers])
@@ -150,7 +158,7 @@ def test_patches_of_a_wheel_add_up_for_all_axles_in_the_tracks_axes(side):
     assert s[state.LATERAL_LEFT + side, 0] == pytest.approx(-expected[0])
     assert s[state.LOAD_RIGHT - side, 0] == s[state.LATERAL_RIGHT - side, 0] == 0.0
     s[state.ON_TRACK] = 0.0  # a train that has left presses no more
-    bear(s, q, side, 0, Patch(-0.3901, 0.01, -0.87, 0.001, K, CREEP, SPIN), 0)
+    bear(s, q, GEOMETRY, side, 0, Patch(-0.3901, 0.01, -0.87, 0.001, K, CREEP, SPIN, 0.0), 0)
     add_wheels(s, q, 0)
     assert not s[state.FORCE_Y : state.SPIN_POWER + 1].any()
 
