@@ -93,7 +93,11 @@ class Contact:
         wide = np.linspace(y[0] - 0.2, y[-1] + 0.2, 8000)
         self.rail_nodes = wide, self.rail_at(wide)[0]
         self.pair, self.axles = pair, scenario.vehicle.axles
-        self.speed = max(scenario.vehicle.speed, pair.speed_bound)
+        self.train = scenario.vehicle.speed
+        self.speed = max(self.train, pair.speed_bound)
+        wheelset = next(b for b in scenario.vehicle.bodies if b.name == scenario.vehicle.wheelset)
+        estimate = 0.3 * wheelset.mass / self.axles * pair.rolling_radius**2
+        self.axle_inertia = scenario.vehicle.axle_inertia or estimate
         self.alpha_r = 1.5 * (1.0 - pair.restitution)
         self.modulus = pair.youngs_modulus / (2.0 * (1.0 - pair.poisson_ratio**2))
         self.shear = pair.youngs_modulus / (2.0 * (1.0 + pair.poisson_ratio))
@@ -111,7 +115,7 @@ class Contact:
         weights = np.array(
             [(nu - 0.25) * (nu - 0.5) * 8.0, nu * (0.5 - nu) * 16.0, nu * (nu - 0.25) * 8.0]
         )
-        self.kalker = kalker["place"], *(np.log(kalker[name] @ weights) for name in ("C22", "C23"))
+        self.kalker = kalker["place"], *(np.log(kalker[f"C{n}"] @ weights) for n in (11, 22, 23))
 
     def rail_at(self, y):
         """Height, slope and second derivative."""
@@ -146,10 +150,11 @@ class Contact:
         height, slope, _ = self.rail_at(y)
         return height - s * sines - q * cosine, at, y, height, slope
 
-    def patches(self, wheelset, velocity, track, track_velocity, damping):
+    def patches(self, wheelset, velocity, track, track_velocity, damping, turning):
         """Penetrations, approach rates, and the force on the wheelset and on the track of all four.
 
-        ``wheelset`` and ``track`` are (y, z, roll), heights from the level of the crowns at rest.
+        ``wheelset`` and ``track`` are (y, z, roll), heights from the level of the crowns at rest;
+        ``turning`` is the rate of an axle.
         """
         turn = np.array(
             [[np.cos(track[2]), np.sin(track[2])], [-np.sin(track[2]), np.cos(track[2])]]
@@ -184,14 +189,20 @@ class Contact:
         ab = area * delta / (lateral + rolling)
         a_over_b = np.where(lateral < rolling, k, 1.0 / k)
         place = np.log(a_over_b)
-        c22, c23 = (np.exp(np.interp(place, self.kalker[0], c)) for c in self.kalker[1:])
+        c11, c22, c23 = (np.exp(np.interp(place, self.kalker[0], c)) for c in self.kalker[1:])
         n = np.maximum(hertz * delta**1.5 * (1.0 + damping * approach), 0.0)
         creepage = np.sum(relative * tangent, axis=1) / self.speed
-        by_spin = -self.shear * ab**1.5 * c23 * np.sin(lean) / radius
+        # forwards the wheel's point moves with V less what the axle's turning takes back
+        from_axle = from_wheelset @ (-np.sin(roll), np.cos(roll))
+        slip = self.train - turning * from_axle
+        by_spin = -self.shear * ab**1.5 * c23 * np.sin(lean) * turning / self.speed
         linear = by_spin - self.shear * ab * c22 * creepage
+        along = -self.shear * ab * c11 * slip / self.speed
+        size = np.hypot(along, linear)
         limit = np.maximum(self.pair.friction * n, 1e-30)
-        tau = np.minimum(np.abs(linear) / limit, 3.0)
-        t = np.sign(linear) * limit * (tau - tau**2 / 3.0 + tau**3 / 27.0)
+        tau = np.minimum(size / limit, 3.0)
+        share = limit * (tau - tau**2 / 3.0 + tau**3 / 27.0) / np.where(size == 0.0, 1.0, size)
+        t, forward = share * linear, share * along
         force = self.axles * (n[:, None] * normal + t[:, None] * tangent)
         on_wheelset = np.append(turn.T @ force.sum(0), np.sum(_cross(from_wheelset, force)))
         on_track = np.append(-turn.T @ force.sum(0), -np.sum(_cross(point, force)))
@@ -206,8 +217,9 @@ class Contact:
             stored=self.axles * np.sum(0.4 * hertz * delta**2.5),
             impact=self.axles * np.sum((n - hertz * delta**1.5) * approach),
             tangential=-self.axles * np.sum(t * np.sum(relative * tangent, axis=1)),
-            spin=self.axles
-            * np.sum(t * by_spin / np.where(linear == 0.0, 1.0, linear) * creepage * self.speed),
+            spin=self.axles * np.sum(share * by_spin * creepage * self.speed),
+            forward=-self.axles * np.sum(forward * slip),
+            turning=-np.sum(forward * from_axle) / self.axle_inertia,
         )
 
 
@@ -249,7 +261,10 @@ def _root(function, x):
 
 
 class Whole:
-    """Right-hand side of the coupled system; state: pier x, v; z, eps, largest; vehicle x, v."""
+    """Right-hand side of the coupled system.
+
+    State: pier x, v; z, eps, largest; vehicle x, v; an axle's rate.
+    """
 
     def __init__(self, scenario, kalker):
         self.contact = Contact(scenario, kalker)
@@ -271,7 +286,7 @@ class Whole:
         self.damping = np.zeros(4)
         self.level = np.array([0.0, scenario.wheelrail.rolling_radius, 0.0])
 
-    def touch(self, x, v, vehicle, speed):
+    def touch(self, x, v, vehicle, speed, turning):
         """Contact of the wheelset with the track as the pier's top holds it."""
         return self.contact.patches(
             vehicle[-3:] - self.level,
@@ -279,6 +294,7 @@ class Whole:
             self.to_track @ x,
             self.to_track @ v,
             self.damping,
+            turning,
         )
 
     def hinge(self, x, v, *state):
@@ -289,12 +305,13 @@ class Whole:
         return hinge_rates(self.pier.bouc_wen, x, v, *state)
 
     def parts(self, state):
-        """Pier x, v; z, eps and largest rotation of the hinge; vehicle x, v."""
-        return np.split(state, [3, 6, 9, 9 + self.n])
+        """Pier x, v; z, eps and largest rotation of the hinge; vehicle x, v; an axle's rate."""
+        *parts, turning = np.split(state, [3, 6, 9, 9 + self.n, 9 + 2 * self.n])
+        return *parts, turning[0]
 
     def rates(self, t, state):
-        x, v, hinge, vehicle, speed = self.parts(state)
-        touch = self.touch(x, v, vehicle, speed)
+        x, v, hinge, vehicle, speed, turning = self.parts(state)
+        touch = self.touch(x, v, vehicle, speed, turning)
         moment, hinge_rate = self.hinge(x[1], v[1], *hinge)
         on_wheelset, on_track = touch.on_wheelset, self.coupled * touch.on_track
         a = np.interp(t, *self.ground)
@@ -303,11 +320,14 @@ class Whole:
         push = self.weight * (1.0 + np.interp(t, *self.lift) / G) - self.mass * a * self.sideways
         push -= self.c @ speed + self.k @ vehicle
         push[-3:] += on_wheelset
-        return np.concatenate([v, force / self.pier_mass, hinge_rate, speed, push / self.mass])
+        return np.concatenate(
+            [v, force / self.pier_mass, hinge_rate, speed, push / self.mass, [touch.turning]]
+        )
 
     def at_rest(self):
         """Equilibrium, centred on the track, with the sideways creep that carries the lean."""
         h, total = self.pier.bouc_wen, self.weight.sum()
+        even = self.contact.train / self.level[1]
         self.damping[:] = self.contact.alpha_r / self.contact.pair.onset_rate_bound
         foot = -np.sign(self.pier.track_offset) * 3.0 * total * abs(self.pier.track_offset) / h.k0
         sign = np.sign(foot) or 1.0
@@ -318,22 +338,26 @@ class Whole:
 
         def state(unknown):
             x = 1e-3 * unknown[:3]
-            vehicle = 1e-3 * unknown[3:]
+            vehicle = 1e-3 * unknown[3:-1]
+            turning = even * (1.0 + 1e-3 * unknown[-1])
             drift = 0.1 * vehicle[-3]
             vehicle[-3] = (self.to_track @ x)[0]
             z, eps = loading(abs(x[1]))
-            return np.concatenate([x, 0 * x, [z, eps, abs(x[1])], vehicle, drift * self.sideways])
+            return np.concatenate(
+                [x, 0 * x, [z, eps, abs(x[1])], vehicle, drift * self.sideways, [turning]]
+            )
 
         def unbalanced(unknown):
             s = state(unknown)
-            x, _, hinge, vehicle, speed = self.parts(s)
-            touch = self.touch(x, 0 * x, vehicle, speed)
+            x, _, hinge, vehicle, speed, turning = self.parts(s)
+            touch = self.touch(x, 0 * x, vehicle, speed, turning)
             moment, _ = self.hinge(x[1], 0.0, *hinge)
             on_pier = self.coupled * self.to_track.T @ touch.on_track - self.pier_k @ x
             on_pier[1] -= moment
             push = self.weight - self.k @ vehicle
             push[-3:] += touch.on_wheelset
-            return np.concatenate([on_pier, push]) / total
+            balance = touch.turning * self.contact.axle_inertia / self.level[1]
+            return np.concatenate([on_pier, push, [balance]]) / total
 
         whole = self.pier_k + np.diag([0.0, h.k0, 0.0])
         x = self.coupled * np.linalg.solve(whole, self.to_track.T @ [0.0, total, 0.0])
@@ -342,8 +366,8 @@ class Whole:
         vehicle[:-3] = np.linalg.solve(self.k[:-3, :-3], self.weight[:-3])
         vehicle += np.tile([0.0, z + 8e-5, roll], self.n // 3)
         vehicle[0::3] += y + roll * self.heights
-        guess = 1e3 * np.concatenate([x, vehicle])
-        guess[-3] = 0.0
+        guess = 1e3 * np.concatenate([x, vehicle, [0.0]])
+        guess[-4] = 0.0
         return state(_root(unbalanced, guess))
 
 
@@ -357,14 +381,14 @@ def solve(scenario, kalker, times, rtol=1e-6, push=0.0):
     """
     whole = Whole(scenario, kalker)
     contact, state, t = whole.contact, whole.at_rest() + push, 0.0
-    scale = np.repeat([1e-7, 1e-5, 1e-8, 1e-7, 1e-5], [3, 3, 3, whole.n, whole.n])
+    scale = np.repeat([1e-7, 1e-5, 1e-8, 1e-7, 1e-5, 1e-5], [3, 3, 3, whole.n, whole.n, 1])
     memory = {}
 
     def touching(s):
         if s.tobytes() not in memory:
             memory.clear()
-            x, v, _, vehicle, speed = whole.parts(s)
-            memory[s.tobytes()] = whole.touch(x, v, vehicle, speed)
+            x, v, _, vehicle, speed, turning = whole.parts(s)
+            memory[s.tobytes()] = whole.touch(x, v, vehicle, speed, turning)
         return memory[s.tobytes()]
 
     closed = touching(state).penetration > 0.0

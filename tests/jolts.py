@@ -33,6 +33,8 @@ PIER = {
     # a hinge that wears within the jolt
     "bouc_wen": {"rho_eps": 0.5, "eta0": 0.2, "rho_p": 0.4, "eps_p": 2e-4, "sigma": 4e-4, "u": 2.5},
 }
+# flanges as treads: the second writing knows no table
+WHEELS = {"preset": "bart", "flange_creep_law": "she"}
 # what differs, and to which side the train is pushed
 JOLTS = {
     "to the right": ({}, 1.0),
@@ -54,16 +56,17 @@ def jolt(name, dt=DT, sign=1.0, frame=FRAME, **pier):
         vertical=GroundMotion("jolt", 1e-3, UPWARDS),
         dt=dt,
         history_step=frame,
+        wheelrail=WHEELS,
         **changes,
     )
 
 
 def push(name):
-    """What is added to the state at rest: pier x, v; hinge; vehicle x, v."""
+    """What is added to the state at rest: pier x, v; hinge; vehicle x, v; an axle's rate."""
     sideways = np.tile([1.0, 0.0, 0.0], 3)
     turning = TURNING * (np.arange(9) == 8)
     return JOLTS[name][1] * np.concatenate(
-        [np.zeros(9), SHIFT * sideways, SPEED * sideways + turning]
+        [np.zeros(9), SHIFT * sideways, SPEED * sideways + turning, [0.0]]
     )
 
 
@@ -75,7 +78,7 @@ def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
     place = np.argsort(kernel_order(9))
     x, v, a = state.VEHICLE_X + place, state.VEHICLE_V + place, state.VEHICLE_A + place
     s[x, 0] += sign * push(name)[9:18]
-    s[v, 0] += sign * push(name)[18:]
+    s[v, 0] += sign * push(name)[18:27]
     stage(system, find_contact_forces)(s, q, system.geometry)
     for old, new in (
         (state.TRACK_FORCE_OLD, state.TRACK_FORCE),
@@ -83,6 +86,7 @@ def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
         (state.CONTACT_POWER_OLD, state.CONTACT_POWER),
     ):
         s[old : old + 3] = s[new : new + 3]
+    s[state.CONTACT_POWER_OLD + 3] = s[state.CONTACT_POWER + 3]
     s[state.DASHPOT_POWER] = s[v, 0] @ matrices.damping @ s[v, 0]
     force = np.where(np.arange(9) % 3 == 1, matrices.mass * GRAVITY, 0.0)
     force -= matrices.stiffness @ s[x, 0] + matrices.damping @ s[v, 0]
@@ -104,7 +108,8 @@ def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
 
 def measured(states, touches, whole):
     """What a history and the energy audit show, from the second writing, by the same names."""
-    x, v, hinge, vehicle, speed = np.split(states, [3, 6, 9, 9 + whole.n], axis=1)
+    ends = [3, 6, 9, 9 + whole.n, 9 + 2 * whole.n]
+    x, v, hinge, vehicle, speed, turning = np.split(states, ends, axis=1)
     track, track_v = x @ whole.to_track.T, v @ whole.to_track.T
     moment = np.array([whole.hinge(*row)[0] for row in np.column_stack([x[:, 1], v[:, 1], hinge])])
     time = STORED["times"]
@@ -135,6 +140,7 @@ def measured(states, touches, whole):
         "wheel_load_left_n": -force[:, :2, 1].sum(1),
         "wheel_load_right_n": -force[:, 2:, 1].sum(1),
         "lateral_force_n": -force[:, :, 0].sum(1),
+        "axle_rate_rad_s": turning[:, 0],
     }
     for k, body in enumerate(("car", "bogie", "wheelset")):
         for j, what in enumerate(("lateral_m", "vertical_m", "roll_rad")):
@@ -155,7 +161,8 @@ def measured(states, touches, whole):
         "contact_vehicle": total(np.sum(on_wheelset * speed[:, -3:], axis=1)),
         "contact_track": total(np.sum(on_track * track_v, axis=1)),
         "impact": total(np.array([t.impact for t in touches])),
-        "creep": total(np.array([t.tangential + t.spin for t in touches])),
+        "creep": total(np.array([t.tangential + t.spin + t.forward for t in touches])),
+        "forward": total(np.array([t.forward for t in touches])),
         "spin": total(np.array([t.spin for t in touches])),
         "hertz": [touches[-1].stored - touches[0].stored],
     }

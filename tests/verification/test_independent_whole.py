@@ -6,7 +6,7 @@ from scipy.signal import butter, lfilter, lfilter_zi
 
 import railquake as rq
 from independent_model import solve
-from jolts import JOLTS, STORED, jolt, measured, push
+from jolts import JOLTS, STORED, WHEELS, jolt, measured, push
 from kalker import kalker_table
 from railquake.inputs.ground_motion import GroundMotion
 
@@ -25,7 +25,7 @@ def shake():
 @pytest.fixture(scope="module")
 def independent(shared):
     """Histories at every millisecond."""
-    case = rq.scenario(motion=shake())
+    case = rq.scenario(motion=shake(), wheelrail=WHEELS)
     fine = 1e-3 / FINER * np.arange(round(FINER * 1e3 * DURATION) + 1)
     states, touches, _, changes = solve(case, kalker_table(shared), fine, rtol=1e-6)
     loads = np.array([-t.force[:, 1].reshape(2, 2).sum(1) for t in touches])
@@ -48,7 +48,7 @@ def independent(shared):
 
 @pytest.fixture(scope="module")
 def marched():
-    return {dt: rq.simulate(rq.scenario(motion=shake(), dt=dt)) for dt in STEPS}
+    return {dt: rq.simulate(rq.scenario(motion=shake(), wheelrail=WHEELS, dt=dt)) for dt in STEPS}
 
 
 def low_passed(load):

@@ -40,11 +40,25 @@ def test_histories_are_those_of_the_second_writing(jolted):
 
 
 def test_every_energy_is_that_of_the_second_writing(jolted):
-    """Integrals of powers, within 3 %: creep and spin owe most to the flange's curvature."""
+    """Integrals of powers, within 3 %: creep and spin owe most to the flange's curvature.
+
+    What the train's forward motion pays, 2 % of creep's loss, is of the step's first order: the
+    axle is stepped implicitly, and it catches up with a flange within ten steps.
+    """
     name, response = jolted
     for key, (expected,) in ((k, v) for k, v in STORED[name].items() if k.startswith("energy: ")):
         found = getattr(response.audit, key.removeprefix("energy: "))
-        assert found == pytest.approx(expected, rel=0.03, abs=1.0), key
+        within = 0.1 if key == "energy: forward" else 0.03
+        assert found == pytest.approx(expected, rel=within, abs=1.0), key
+
+
+def test_what_forward_motion_pays_converges_with_the_step():
+    name = "to the right"
+    (expected,) = STORED[name]["energy: forward"]
+    coarse, fine = (
+        rq.simulate(pushed(name, dt), target=PYTHON).audit.forward - expected for dt in (2e-5, 1e-5)
+    )
+    assert coarse / fine == pytest.approx(2.0, abs=0.2)
 
 
 def test_whole_balance_closes(jolted):
@@ -60,7 +74,7 @@ def test_contact_loses_no_more_than_its_own_equations_do(jolted):
     energy = {k.removeprefix("energy: "): v[0] for k, v in STORED[name].items() if len(v) == 1}
     work = energy["contact_vehicle"] + energy["contact_track"]
     lost = energy["impact"] + energy["creep"]
-    expected = -work - energy["hertz"] - lost + energy["spin"]
+    expected = -work - energy["hertz"] - lost + energy["spin"] + energy["forward"]
     assert expected > 0.0
     # the track feels the forces of the step before: at 2e-5 s, 2 % of their work on it
     lag = 0.02 * abs(energy["contact_track"])

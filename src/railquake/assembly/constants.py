@@ -49,6 +49,10 @@ def constants_of(
     q[constant.ZHAI_PSI] = solver.psi
     q[constant.ZHAI_PHI] = solver.phi
     q[constant.AXLES] = scenario.vehicle.axles
+    q[constant.SPEED] = scenario.vehicle.speed
+    q[constant.AXLE_INERTIA] = scenario.vehicle.inertia_about_axle(
+        scenario.wheelrail.rolling_radius
+    )
     q[constant.VEHICLE_MASS] = scenario.vehicle.mass
     q[constant.STATIC_WHEEL_LOAD] = static_wheel_load(vehicle)
     q[layout.constant_blocks["FILTER_BY"]] = low_pass_coefficients(

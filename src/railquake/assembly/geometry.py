@@ -80,6 +80,7 @@ def build_geometry(wheelrail: WheelRail) -> Geometry:
         rail_curvature,
         hertz.stiffness,
         hertz.area,
+        hertz.along,
         hertz.creep,
         hertz.spin,
         np.log(hertz.a_over_b),

@@ -13,6 +13,7 @@ from railquake.march.compiler import PYTHON, bind
 from railquake.march.order import kernel_order
 from railquake.march.slots import chosen
 from railquake.march.step import find_contact_forces
+from railquake.physics.axle import axle_step
 from railquake.physics.profiles import Geometry, zone_contact
 
 if TYPE_CHECKING:
@@ -27,12 +28,15 @@ __all__ = [
     "carried_car",
     "contact_forces",
     "contact_stages",
+    "settle_axle",
     "settlement",
     "start_state",
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Stages = Callable[[Array, Array, Geometry], None]
+
+MOST_TURNS = 50  # of Newton's method for the axle's rate
 
 
 def contact_stages(choices: Mapping[str, str], layout: Layout) -> Stages:
@@ -42,10 +46,11 @@ def contact_stages(choices: Mapping[str, str], layout: Layout) -> Stages:
     return stages
 
 
-def blank_state(vehicle: VehicleMatrices, layout: Layout) -> Array:
-    """The state before anything is known, shape (state rows, 1)."""
+def blank_state(vehicle: VehicleMatrices, Q: Array, layout: Layout) -> Array:
+    """The state before anything is known, shape (state rows, 1); the axle rolls evenly."""
     state = layout.state
     S = np.zeros((layout.size.STATE_ROWS, 1))
+    S[state.AXLE_RATE] = Q[layout.constant.SPEED] / Q[layout.constant.WHEELSET_HEIGHT]
     S[state.ON_TRACK] = 1.0
     S[layout.state_blocks["NEAR"]] = 1.0
     S[layout.state_blocks["CELL_HELD"]] = -1.0  # no cell has been fetched yet
@@ -62,6 +67,22 @@ def _close_patches(S: Array, Q: Array, layout: Layout) -> None:
     S[layout.state_blocks["PATCH_HYSTERESIS"], 0] = slowest
 
 
+def settle_axle(S: Array, Q: Array, geometry: Geometry, stages: Stages, layout: Layout) -> None:
+    """Run the contact stages with the axle's rate at which its moments balance.
+
+    Newton's method from the rate that is there; it is in the state afterwards.
+    """
+    state = layout.state
+    for _ in range(MOST_TURNS):
+        stages(S, Q, geometry)
+        change = axle_step(
+            float(S[state.AXLE_MOMENT, 0]), float(S[state.AXLE_DAMPING, 0]), 0.0, 1.0
+        )
+        if abs(change) <= 1e-13 * abs(S[state.AXLE_RATE, 0]):
+            break
+        S[state.AXLE_RATE, 0] += change
+
+
 def contact_forces(
     S: Array, Q: Array, geometry: Geometry, stages: Stages, layout: Layout
 ) -> ContactForces:
@@ -73,6 +94,7 @@ def contact_forces(
     place = [size.WHEELSET_Y, size.WHEELSET_Z, size.WHEELSET_PHI]
     position = state.VEHICLE_X + np.array(place)
     velocity = state.VEHICLE_V + np.array(place)
+    even = S[state.AXLE_RATE].copy()
 
     @cache  # most derivatives of the equilibrium leave the contacts where they are
     def acting(place: tuple[float, ...]) -> tuple[Array, Array]:
@@ -81,7 +103,8 @@ def contact_forces(
         S[blocks["TRACK"], 0] = place[6:]
         S[blocks["TRACK_V"], 0] = 0.0
         _close_patches(S, Q, layout)
-        stages(S, Q, geometry)
+        S[layout.state.AXLE_RATE] = even
+        settle_axle(S, Q, geometry, stages, layout)
         return S[blocks["WHEELSET_FORCE"], 0].copy(), S[blocks["NODE"], 0].copy()
 
     return lambda position, velocity, track: acting((*position, *velocity, *track))
@@ -140,7 +163,7 @@ def start_state(
     S[blocks["VEHICLE_V"], 0] = np.where(order % 3 == 0, at.drift, 0.0)
     S[blocks["TRACK"], 0] = track
     _close_patches(S, Q, layout)
-    stages(S, Q, geometry)
+    settle_axle(S, Q, geometry, stages, layout)
     for block in ("TRACK_FORCE", "WHEELSET_FORCE", "CONTACT_POWER"):
         S[blocks[f"{block}_OLD"]] = S[blocks[block]]
     # at rest the suspension bears what the contact pushes

@@ -263,7 +263,7 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
 
     # --- the state at rest ---------------------------------------------------------------------
     stages = contact_stages(choices, layout)
-    blank = blank_state(vehicle, layout)
+    blank = blank_state(vehicle, constants, layout)
     forces = contact_forces(blank.copy(), constants, geometry, stages, layout)
     at = find_rest(
         Equilibrium(

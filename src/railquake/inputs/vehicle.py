@@ -130,6 +130,10 @@ class Vehicle(FromPreset):
         Integer, Field(ge=1, le=1000, description="Wheels on each side that share the load")
     ]
     speed: Annotated[NonNegativeSpeed, Field(description="Speed along the track [m/s]")]
+    axle_inertia: Annotated[
+        PositiveRollInertia | None,
+        Field(description="Of one wheelset about its axle; else 0.3 m r^2, an estimate [kg m2]"),
+    ] = None
 
     @model_validator(mode="after")
     def _assembles(self) -> Vehicle:
@@ -163,6 +167,23 @@ class Vehicle(FromPreset):
                     f"bodies.{loose[0]}",
                 )
         return self
+
+    def inertia_about_axle(self, radius: float) -> float:
+        """Give `axle_inertia`, or its estimate from the rolling radius [kg m2].
+
+        Parameters
+        ----------
+        radius : float
+            m.
+
+        Returns
+        -------
+        float
+        """
+        if self.axle_inertia is not None:
+            return self.axle_inertia
+        (wheelset,) = (body for body in self.bodies if body.name == self.wheelset)
+        return 0.3 * wheelset.mass / self.axles * radius**2
 
     @property
     def mass(self) -> float:

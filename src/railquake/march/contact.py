@@ -9,6 +9,7 @@ import numpy as np
 
 from railquake.march.packing import reader, writer
 from railquake.march.rows import constant, size, state
+from railquake.march.rows_state import POWERS
 from railquake.physics.contact_table import (
     FIELDS,
     AxisCells,
@@ -48,6 +49,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 LOOK = 2e-4  # s; twice what passes at most between two looks at flanges, see `look_at_flange`
 SPARE = 1e-4  # m
+KINDS = len(POWERS)
 
 read_axis = reader(AxisCells)
 read_contact = reader(Contact)
@@ -205,7 +207,9 @@ def clear_forces(S: Array, lane: int) -> None:
     """Nothing of what the patches will add up."""
     S[state.FORCE_PSI, lane] = 0.0
     S[state.HERTZ_ENERGY, lane] = 0.0
-    for k in range(3):
+    S[state.AXLE_MOMENT, lane] = 0.0
+    S[state.AXLE_DAMPING, lane] = 0.0
+    for k in range(KINDS):
         S[state.CONTACT_POWER + k, lane] = 0.0
     for side in range(2):
         S[state.LOAD + side, lane] = 0.0
@@ -222,6 +226,7 @@ def motion_of_side(S: Array, side: int, lane: int) -> WheelMotion:
         sign * S[state.ROLL_V, lane],
         sign * S[state.ROLL_SIN, lane],
         S[state.ROLL_COS, lane],
+        S[state.AXLE_RATE, lane],
     )
 
 
@@ -310,6 +315,9 @@ def add_patch(
     S[state.IMPACT_POWER, lane] += forces.impact
     S[state.CREEP_POWER, lane] += forces.creep
     S[state.SPIN_POWER, lane] += forces.spin
+    S[state.FORWARD_POWER, lane] += forces.forward
+    S[state.AXLE_MOMENT, lane] += forces.axle_moment
+    S[state.AXLE_DAMPING, lane] += forces.axle_damping
     S[state.LOAD + side, lane] -= forces.z
     S[state.LATERAL + side, lane] -= sign * forces.y
 
@@ -322,7 +330,7 @@ def add_wheels(S: Array, Q: Array, lane: int) -> None:
         S[state.LATERAL + side, lane] *= count
     S[state.FORCE_PSI, lane] *= count
     S[state.HERTZ_ENERGY, lane] *= count
-    for k in range(3):
+    for k in range(KINDS):
         S[state.CONTACT_POWER + k, lane] *= count
     force_y = -(S[state.LATERAL_LEFT, lane] + S[state.LATERAL_RIGHT, lane])
     force_z = -(S[state.LOAD_LEFT, lane] + S[state.LOAD_RIGHT, lane])

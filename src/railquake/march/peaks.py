@@ -6,7 +6,7 @@ import numpy as np
 
 from railquake.march.packing import reader
 from railquake.march.rows import constant, state
-from railquake.march.rows_state import FILTERED
+from railquake.march.rows_state import FILTERED, POWERS
 from railquake.physics.derailment import derailment_coefficient, least_load
 from railquake.physics.elementary import larger_of
 from railquake.physics.low_pass import Coefficients, Memory, low_pass
@@ -22,6 +22,7 @@ __all__ = [
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 FILTERS = len(FILTERED)
+KINDS = len(POWERS)
 
 read_coefficients = reader(Coefficients)
 
@@ -45,7 +46,7 @@ def measure_contact(S: Array, Q: Array, lane: int) -> None:
     """Peaks, losses and times of wheel and rail."""
     dt = Q[constant.DT, lane]
     half = 0.5 * dt
-    for k in range(3):
+    for k in range(KINDS):
         power = S[state.CONTACT_POWER + k, lane]
         S[state.CONTACT_LOST + k, lane] += half * (S[state.CONTACT_POWER_OLD + k, lane] + power)
         S[state.CONTACT_POWER_OLD + k, lane] = power

@@ -46,6 +46,7 @@ _CONTACT = (
     row("GRAVITY", "m/s2", "standard gravity"),
     row("WHEELSET_HEIGHT", "m", "wheelset's centre of gravity above the rail crowns"),
     row("AXLES", "1", "wheels a side that the section stands for"),
+    row("AXLE_INERTIA", "kg m2", "of one wheelset about its axle, J_y"),
     block(
         "CONTACT",
         "material and speed (`patch.Contact`)",
@@ -54,6 +55,7 @@ _CONTACT = (
             ("ONSET_BOUND", "m/s", "least rate at the onset of a contact"),
             ("FRICTION", "1", "mu"),
             ("INVERSE_SPEED", "s/m", "1/max(V, bound)"),
+            ("SPEED", "m/s", "V"),
         ),
     ),
     block(

@@ -4,9 +4,10 @@ from railquake.march.declaration import Row, block, row
 from railquake.measures import MEASURES, StateRow
 from railquake.physics.derailment import EVENTS
 
-__all__ = ["FILTERED", "PATCHES", "STATE_GROUPS", "STATE_ROWS"]
+__all__ = ["FILTERED", "PATCHES", "POWERS", "STATE_GROUPS", "STATE_ROWS"]
 
 PATCHES = ("left tread", "left flange", "right tread", "right flange")
+POWERS = ("impact", "creep", "spin", "forward")
 FILTERED = ("lateral force", "load left", "load right", "lateral left", "lateral right")
 
 _GROUND = (
@@ -101,6 +102,9 @@ _WHEELSET = (
     row("ROLL_V", "rad/s", "rate of the roll"),
     row("ROLL_SIN", "1", "sine of the relative roll"),
     row("ROLL_COS", "1", "cosine of the relative roll"),
+    row("AXLE_RATE", "rad/s", "of each wheelset about its axle", "axle_rate_rad_s", train=True),
+    row("AXLE_MOMENT", "N m", "of the contact forces on a wheelset about its axle"),
+    row("AXLE_DAMPING", "N m s", "how much that moment falls per axle's rate"),
 )  # fmt: skip
 
 # the contact table's cell of each side (left, right); the axes are symmetric
@@ -148,9 +152,10 @@ _FORCES = tuple(
                 ("IMPACT_POWER", "W", "lost to the normal force's hysteresis"),
                 ("CREEP_POWER", "W", "lost to creepage"),
                 ("SPIN_POWER", "W", "brought in by spin"),
+                ("FORWARD_POWER", "W", "brought in against longitudinal creepage"),
             ),
         ),
-        row("CONTACT_POWER_OLD", "W", "the same, one time step before", rows=3),
+        row("CONTACT_POWER_OLD", "W", "the same, one time step before", rows=len(POWERS)),
         block(
             "LOAD",
             "vertical load of the wheels of each side on their rail",
@@ -218,7 +223,8 @@ _ENERGY = (
         (
             ("LOST_IMPACT", "J", "lost to the normal force's hysteresis"),
             ("LOST_CREEP", "J", "lost to creepage"),
-            ("SPIN_INPUT", "J", "brought in by the train's forward motion"),
+            ("SPIN_INPUT", "J", "brought in by the train's forward motion, by spin"),
+            ("FORWARD_INPUT", "J", "the same, against longitudinal creepage"),
         ),
     ),
     row("DASHPOT_POWER", "W", "of the dashpots", released=True),

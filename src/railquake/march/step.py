@@ -36,6 +36,7 @@ from railquake.march.wheelset import (
     place_wheelset,
     predict_wheelset,
     push_wheelset,
+    turn_axle,
 )
 from railquake.physics.profiles import Geometry
 
@@ -161,6 +162,7 @@ def accelerate_wheelset(S: Array, Q: Array, lanes: int) -> None:
     for lane in range(lanes):
         add_wheels(S, Q, lane)
         push_wheelset(S, Q, lane)
+        turn_axle(S, Q, lane)
         measure_contact(S, Q, lane)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from railquake.march.rows import constant, size, state
 from railquake.march.sprung import predict
+from railquake.physics.axle import axle_step
 from railquake.physics.elementary import sin_cos
 from railquake.physics.track import wheelset_on_track
 
@@ -16,6 +17,7 @@ __all__ = [
     "place_wheelset",
     "predict_wheelset",
     "push_wheelset",
+    "turn_axle",
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -91,6 +93,16 @@ def push_wheelset(S: Array, Q: Array, lane: int) -> None:
         push_along(S, Q, 0, size.WHEELSET_Y, lane)
         + push_along(S, Q, 1, size.WHEELSET_Z, lane)
         + push_along(S, Q, 2, size.WHEELSET_PHI, lane)
+    )
+
+
+def turn_axle(S: Array, Q: Array, lane: int) -> None:
+    """The wheelsets about their axles at the new time."""
+    S[state.AXLE_RATE, lane] += S[state.ON_TRACK, lane] * axle_step(
+        S[state.AXLE_MOMENT, lane],
+        S[state.AXLE_DAMPING, lane],
+        Q[constant.AXLE_INERTIA, lane],
+        Q[constant.DT, lane],
     )
 
 

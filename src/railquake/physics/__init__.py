@@ -11,6 +11,7 @@ knows how a run keeps its numbers: the march (`railquake.march`) loads, calls an
 `hertz`          stiffness of the contact                               Eq. 6
 `impact`         normal force and loss at impacts, a file a law         Eqs. 5, 7
 `creep`          tangential force, a file a law                         Eq. 8
+`axle`           longitudinal slip, and the axle that turns
 `patch`          one patch: all of it together                          Eqs. 4 to 8
 `pier`           the column                                             Eqs. 9, 10
 `newmark`        its integrator

@@ -128,6 +128,10 @@ class Polynomials(NamedTuple):
     stiffness_1: float
     stiffness_2: float
     stiffness_3: float
+    along: float
+    along_1: float
+    along_2: float
+    along_3: float
     creep: float
     creep_1: float
     creep_2: float
@@ -179,14 +183,15 @@ def cell_polynomials(
     gap_23, gap_33 = climb(low[3], high[3], 0.0, 0.0)
     z_0, z_1, z_2, z_3 = bilinear(table[c00 + 3], table[c10 + 3], table[c01 + 3], table[c11 + 3])
     k_0, k_1, k_2, k_3 = bilinear(table[c00 + 4], table[c10 + 4], table[c01 + 4], table[c11 + 4])
-    f_0, f_1, f_2, f_3 = bilinear(table[c00 + 5], table[c10 + 5], table[c01 + 5], table[c11 + 5])
-    s_0, s_1, s_2, s_3 = bilinear(table[c00 + 6], table[c10 + 6], table[c01 + 6], table[c11 + 6])
-    r_0, r_1, r_2, r_3 = bilinear(table[c00 + 7], table[c10 + 7], table[c01 + 7], table[c11 + 7])
+    a_0, a_1, a_2, a_3 = bilinear(table[c00 + 5], table[c10 + 5], table[c01 + 5], table[c11 + 5])
+    f_0, f_1, f_2, f_3 = bilinear(table[c00 + 6], table[c10 + 6], table[c01 + 6], table[c11 + 6])
+    s_0, s_1, s_2, s_3 = bilinear(table[c00 + 7], table[c10 + 7], table[c01 + 7], table[c11 + 7])
+    r_0, r_1, r_2, r_3 = bilinear(table[c00 + 8], table[c10 + 8], table[c01 + 8], table[c11 + 8])
     return Polynomials(
         low[0], low[1], low[2], low[3], low_0, low_1,
         gap_20, gap_21, gap_22, gap_23, gap_30, gap_31, gap_32, gap_33,
-        z_0, z_1, z_2, z_3, k_0, k_1, k_2, k_3, f_0, f_1, f_2, f_3, s_0, s_1, s_2, s_3,
-        r_0, r_1, r_2, r_3,
+        z_0, z_1, z_2, z_3, k_0, k_1, k_2, k_3, a_0, a_1, a_2, a_3,
+        f_0, f_1, f_2, f_3, s_0, s_1, s_2, s_3, r_0, r_1, r_2, r_3,
     )  # fmt: skip
 
 
@@ -235,6 +240,7 @@ def patch_in_cell(
         gap_psi * roll_rate,
         blend(w, w_roll, cell.rail_z, cell.rail_z_1, cell.rail_z_2, cell.rail_z_3),
         blend(w, w_roll, cell.stiffness, cell.stiffness_1, cell.stiffness_2, cell.stiffness_3),
+        blend(w, w_roll, cell.along, cell.along_1, cell.along_2, cell.along_3),
         blend(w, w_roll, cell.creep, cell.creep_1, cell.creep_2, cell.creep_3),
         blend(w, w_roll, cell.spin, cell.spin_1, cell.spin_2, cell.spin_3),
         blend(w, w_roll, cell.log_ratio, cell.log_ratio_1, cell.log_ratio_2, cell.log_ratio_3),
@@ -249,15 +255,14 @@ def fill_table(shifts: Array, rolls: Array, geometry: Geometry, table: Array) ->
             for zone in range(2):
                 first = geometry.flange_points if zone == 0 else 0
                 last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
-                gap, slope, gap_psi, height, stiffness, f22, f23, ratio = zone_contact(
-                    shifts[j], rolls[i], first, last, geometry
-                )
+                found = zone_contact(shifts[j], rolls[i], first, last, geometry)
                 place = base + zone * FIELDS
-                table[place] = gap
-                table[place + 1] = slope
-                table[place + 2] = gap_psi
-                table[place + 3] = height
-                table[place + 4] = stiffness
-                table[place + 5] = f22
-                table[place + 6] = f23
-                table[place + 7] = ratio
+                table[place] = found.gap
+                table[place + 1] = found.slope
+                table[place + 2] = found.gap_psi
+                table[place + 3] = found.rail_z
+                table[place + 4] = found.stiffness
+                table[place + 5] = found.along
+                table[place + 6] = found.creep
+                table[place + 7] = found.spin
+                table[place + 8] = found.log_ratio

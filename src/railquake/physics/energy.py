@@ -7,11 +7,12 @@
 
 and *contact* ::
 
-    - contact work on vehicle and track = change of Hertz energy + impact + creep - spin
+    - contact work on vehicle and track = change of Hertz energy + impact + creep - spin - forward
 
 Each work is taken with the trapezoid on the forces as applied (the track feels those of the step
 before).  ``hinge`` is the integral of M d(theta_1): it is defined, its split into stored and lost
-is not.  ``spin`` is the lateral work of the spin creepage, paid for by the train's forward motion.
+is not.  The train's forward motion pays for ``spin``, the lateral work of the spin creepage, and
+for ``forward``, what longitudinal creepage loses (net of what the axle gathers as it turns).
 In a decoupled run the contact's work on the moving track is input and no part of the whole.
 """
 
@@ -40,6 +41,7 @@ class Works(NamedTuple):
     impact: float
     creep: float
     spin: float
+    forward: float
 
 
 def kinetic_and_elastic(x: float, v: float, force: float, inverse_mass: float) -> float:
@@ -71,6 +73,7 @@ def contact_residual(works: Works, hertz: float) -> float:
         - works.impact
         - works.creep
         + works.spin
+        + works.forward
     )
 
 
@@ -90,8 +93,9 @@ class EnergyAudit:
         Work of the contact forces on the vehicle and on the track.
     hertz : float
         Change of the elastic energy stored in the contacts.
-    impact, creep, spin : float
-        Lost to the normal force's hysteresis and to creepage; brought in by spin.
+    impact, creep, spin, forward : float
+        Lost to the normal force's hysteresis and to creepage; brought in by spin and by the
+        train's forward motion against longitudinal creepage.
     whole_residual, contact_residual : float
         What is left of each balance; of the contact's, positive is loss and negative is gain.
     """
@@ -109,13 +113,19 @@ class EnergyAudit:
     impact: float
     creep: float
     spin: float
+    forward: float
     whole_residual: float
     contact_residual: float
 
     @property
     def dissipated(self) -> float:
-        """Dashpots, Rayleigh, hinge, impact and creep together, J."""
-        return self.dashpots + self.rayleigh + self.hinge + self.impact + self.creep
+        """Dashpots, Rayleigh, hinge, impact, creep without what forward motion pays, J."""
+        return self.dashpots + self.rayleigh + self.hinge + self.lost_in_contact
+
+    @property
+    def lost_in_contact(self) -> float:
+        """To impact and to creep, without what the train's forward motion pays, J."""
+        return self.impact + self.creep - self.forward
 
     @property
     def whole_relative(self) -> float:
@@ -125,4 +135,4 @@ class EnergyAudit:
     @property
     def contact_relative(self) -> float:
         """Contact balance's residual over what impact and creep lose."""
-        return self.contact_residual / max(self.impact + self.creep, 1e-9)
+        return self.contact_residual / max(self.lost_in_contact, 1e-9)

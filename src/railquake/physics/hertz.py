@@ -88,6 +88,7 @@ class HertzTable(NamedTuple):
 
     stiffness: Array  # (4 E*/3) r^-1.5
     area: Array  # m n / r
+    along: Array  # G C11
     creep: Array  # G C22
     spin: Array  # G C23
     a_over_b: Array
@@ -102,10 +103,12 @@ def hertz_table(youngs_modulus: float, poisson_ratio: float) -> HertzTable:
     # the ends theta = 0 and pi (line contacts) are out of reach: A and B are bounded below
     angle = np.linspace(0.0, math.pi, HERTZ_NODES).clip(1e-3, math.pi - 1e-3)
     m, n, r = hertz_coefficients(angle)
-    _, c22, c23 = kalker_coefficients(m / n, poisson_ratio)
+    c11, c22, c23 = kalker_coefficients(m / n, poisson_ratio)
     shear = youngs_modulus / (2.0 * (1.0 + poisson_ratio))
     four_thirds = 4.0 * effective_modulus(youngs_modulus, poisson_ratio) / 3.0
-    return HertzTable(four_thirds * r**-1.5, m * n / r, shear * c22, shear * c23, m / n)
+    return HertzTable(
+        four_thirds * r**-1.5, m * n / r, shear * c11, shear * c22, shear * c23, m / n
+    )
 
 
 def hertz_lookup(
@@ -113,24 +116,25 @@ def hertz_lookup(
     rolling: float,
     stiffness: Array,
     area: Array,
+    along: Array,
     creep: Array,
     spin: Array,
     log_ratio: Array,
-) -> tuple[float, float, float, float]:
+) -> tuple[float, float, float, float, float]:
     """Hertz stiffness and creep coefficients of one wheel's contact.
 
     Parameters
     ----------
     lateral, rolling : float
         Relative curvatures A and B, 1/m, both positive.
-    stiffness, area, creep, spin, log_ratio : array
+    stiffness, area, along, creep, spin, log_ratio : array
         Columns of `HertzTable`, and the logarithm of the last.
 
     Returns
     -------
     K : float
         N/m^1.5.
-    f22 / delta, f23 / delta^1.5 : float
+    f11 / delta, f22 / delta, f23 / delta^1.5 : float
         Kalker's linear coefficients per indentation: a b is proportional to delta.
     log(a/b) : float
     """
@@ -140,6 +144,7 @@ def hertz_lookup(
     w = place - cell
     k = ((1.0 - w) * stiffness[cell] + w * stiffness[cell + 1]) / math.sqrt(total)
     ab = ((1.0 - w) * area[cell] + w * area[cell + 1]) / total
+    f11 = ((1.0 - w) * along[cell] + w * along[cell + 1]) * ab
     f22 = ((1.0 - w) * creep[cell] + w * creep[cell + 1]) * ab
     f23 = ((1.0 - w) * spin[cell] + w * spin[cell + 1]) * ab * math.sqrt(ab)
-    return k, f22, f23, (1.0 - w) * log_ratio[cell] + w * log_ratio[cell + 1]
+    return k, f11, f22, f23, (1.0 - w) * log_ratio[cell] + w * log_ratio[cell + 1]

@@ -2,7 +2,8 @@
 
 The vertical gap G(Y, psi) - Z and its derivatives dG/dY = tan(gamma) and dG/dpsi say where the
 patch is and how it closes; Hertz' stiffness, the loss at impacts and the creep force follow, and as
-generalised forces on the wheelset they are the gradient of the gap and its transverse.
+generalised forces on the wheelset they are the gradient of the gap and its transverse.  The creep
+force's longitudinal part turns the axle (`axle`).
 """
 
 import math
@@ -10,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from railquake.physics.creep import bound_on_flange, bound_on_tread, linear_force
+from railquake.physics.axle import distance_from_axle
+from railquake.physics.creep import bound_on_flange, bound_on_tread, linear_force, magnitude
 from railquake.physics.impact import hysteresis, normal_force
 from railquake.physics.profiles import Patch
 
@@ -18,6 +20,9 @@ __all__ = ["Contact", "PatchForces", "WheelMotion", "closing_rate", "patch_force
 
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+TINY = 1e-9  # N
 
 
 class WheelMotion(NamedTuple):
@@ -29,6 +34,7 @@ class WheelMotion(NamedTuple):
     roll_v: float  # psi', rad/s
     roll_sin: float
     roll_cos: float
+    axle_rate: float  # w, rad/s
 
 
 class Contact(NamedTuple):
@@ -37,7 +43,8 @@ class Contact(NamedTuple):
     alpha_r: float  # of the restitution law, see `impact`
     onset_bound: float  # least rate at an onset, m/s
     friction: float  # mu
-    inverse_speed: float  # 1/V, s/m
+    inverse_speed: float  # 1/V, s/m, V having a lower bound
+    speed: float  # V without it, m/s
 
 
 class PatchForces(NamedTuple):
@@ -51,6 +58,9 @@ class PatchForces(NamedTuple):
     impact: float  # power lost to hysteresis, W
     creep: float  # power lost to creepage, W
     spin: float  # power brought in by spin, W
+    forward: float  # power brought in by longitudinal slip, W
+    axle_moment: float  # -r F_x, N m
+    axle_damping: float  # how much it falls per axle's rate, N m s
 
 
 def closing_rate(patch: Patch, motion: WheelMotion) -> float:
@@ -97,17 +107,25 @@ def patch_forces(
     )
     # angle from the axle: sin(gamma - psi)
     sine = cos_gamma * (slope * motion.roll_cos - motion.roll_sin)
+    radius = distance_from_axle(arm_y, arm_z, motion.roll_sin, motion.roll_cos)
+    slip = contact.speed - motion.axle_rate * radius
+    f11 = patch.along * delta
     linear = linear_force(
-        0.0,
+        f11,
         patch.creep * delta,
         patch.spin * delta * math.sqrt(delta),
-        (0.0, sliding * contact.inverse_speed, sine),
+        (
+            slip * contact.inverse_speed,
+            sliding * contact.inverse_speed,
+            sine * motion.axle_rate * contact.inverse_speed,
+        ),
     )
     limit = contact.friction * normal
     if zone == 1:
         force = bound_on_flange(linear, limit, patch.log_ratio, table)
     else:
         force = bound_on_tread(linear, limit, patch.log_ratio, table)
+    share = (magnitude(force) + TINY) / (magnitude(linear) + TINY)  # of Kalker's slope
     down = normal * cos_gamma
     across = (force.creep + force.spin) * cos_gamma
     return PatchForces(
@@ -117,6 +135,9 @@ def patch_forces(
         down * patch.gap_psi + across * (slope * arm_y - arm_z),
         0.4 * elastic * delta,
         (normal - elastic) * rate,
-        -force.creep * sliding,
+        -force.creep * sliding - force.along * slip,
         force.spin * sliding,
+        -force.along * slip,
+        -radius * force.along,
+        radius * radius * share * f11 * contact.inverse_speed,
     )

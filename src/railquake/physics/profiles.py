@@ -74,6 +74,7 @@ class Geometry(NamedTuple):
     rail_curvature: Array
     hertz_stiffness: Array
     hertz_area: Array
+    hertz_along: Array
     hertz_creep: Array
     hertz_spin: Array
     hertz_log_ratio: Array
@@ -104,8 +105,9 @@ class Patch(NamedTuple):
     gap_psi: float  # dG/dpsi, m
     rail_z: float  # height of the contact point in track axes, m
     stiffness: float  # K, N/m^1.5
+    along: float  # f11/delta, N/m
     creep: float  # f22/delta, N/m
-    spin: float  # f23/(delta^1.5 r), r the local rolling radius
+    spin: float  # f23/delta^1.5, N/m^0.5
     log_ratio: float  # log(a/b), semi-axes along and across the rolling direction
 
 
@@ -212,11 +214,12 @@ def zone_contact(shift: float, psi: float, first: int, last: int, geometry: Geom
     Parameters are those of `zone_extremum`.
     """
     found = zone_extremum(shift, psi, first, last, geometry)
-    stiffness, f22, f23, log_ratio = hertz_lookup(
+    stiffness, f11, f22, f23, log_ratio = hertz_lookup(
         found.lateral,
         found.rolling,
         geometry.hertz_stiffness,
         geometry.hertz_area,
+        geometry.hertz_along,
         geometry.hertz_creep,
         geometry.hertz_spin,
         geometry.hertz_log_ratio,
@@ -227,8 +230,9 @@ def zone_contact(shift: float, psi: float, first: int, last: int, geometry: Geom
         found.gap_psi,
         found.rail_z,
         stiffness,
+        f11,
         f22,
-        f23 / found.radius,
+        f23,
         log_ratio,
     )
 

@@ -195,8 +195,8 @@ def _normal(zone: _Zone, z: float, geometry: Geometry) -> tuple[float, float]:
     """Approach and normal force of a zone with the wheelset's centre at ``z``."""
     gap, slope, _, _, _, lateral, rolling, _ = zone
     approach = max(z - gap, 0.0) / math.hypot(1.0, slope)
-    stiffness, _, _, _ = hertz_lookup(
-        lateral, rolling, geometry.hertz_stiffness, geometry.hertz_area, geometry.hertz_creep,
-        geometry.hertz_spin, geometry.hertz_log_ratio,
+    stiffness, *_ = hertz_lookup(
+        lateral, rolling, geometry.hertz_stiffness, geometry.hertz_area, geometry.hertz_along,
+        geometry.hertz_creep, geometry.hertz_spin, geometry.hertz_log_ratio,
     )  # fmt: skip
     return approach, stiffness * approach**1.5

@@ -63,6 +63,7 @@ def audit(system: System, end: Array) -> EnergyAudit:
         impact=float(last[state.LOST_IMPACT]),
         creep=float(last[state.LOST_CREEP]),
         spin=float(last[state.SPIN_INPUT]),
+        forward=float(last[state.FORWARD_INPUT]),
     )
     return EnergyAudit(
         kinetic=kinetic,

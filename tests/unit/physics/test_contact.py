@@ -26,8 +26,8 @@ def test_hertz_of_a_wheel_on_a_rail_crown():
     """physics.md, section 2, Eq. 6: 50 kN, radii 460 and 300 mm."""
     rolling, lateral = 0.5 / 0.460, 0.5 / 0.300
     table = hertz_table(*STEEL)
-    k, _, _, log_ratio = hertz_lookup(
-        lateral, rolling, table.stiffness, table.area, table.creep, table.spin,
+    k, _, _, _, log_ratio = hertz_lookup(
+        lateral, rolling, table.stiffness, table.area, table.along, table.creep, table.spin,
         np.log(table.a_over_b),
     )  # fmt: skip
     assert k == pytest.approx(9.290e10, rel=1e-3)

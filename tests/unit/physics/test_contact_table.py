@@ -160,6 +160,8 @@ def test_left_is_the_mirror_image_of_right(bench, shift, sunk, roll, velocity):
         (state.LATERAL_LEFT, state.LATERAL_RIGHT, -1.0),
         (state.CREEP_POWER, state.CREEP_POWER, 1.0),
         (state.SPIN_POWER, state.SPIN_POWER, 1.0),
+        (state.FORWARD_POWER, state.FORWARD_POWER, 1.0),
+        (state.AXLE_MOMENT, state.AXLE_MOMENT, 1.0),
     ):
         assert here[mine] == pytest.approx(sign * there[other], abs=size)
 

@@ -22,6 +22,7 @@ ROWS = {
     "impact": state.LOST_IMPACT,
     "creep": state.LOST_CREEP,
     "spin": state.SPIN_INPUT,
+    "forward": state.FORWARD_INPUT,
 }
 
 
@@ -75,7 +76,7 @@ def test_each_entry_and_both_balances(system, reaction):
     kept = found.kinetic + found.elastic + found.hinge + found.rayleigh + found.dashpots
     assert found.whole_residual == pytest.approx(given - kept)
     work = found.contact_vehicle + found.contact_track
-    left = -work - found.hertz - found.impact - found.creep + found.spin
+    left = -work - found.hertz - found.impact - found.creep + found.spin + found.forward
     assert found.contact_residual == pytest.approx(left)
 
 
@@ -102,8 +103,8 @@ def test_relative_residuals_are_over_what_is_lost():
     values = {field.name: 1.0 for field in fields(EnergyAudit)}
     some = EnergyAudit(**{**values, "impact": 2.0, "creep": 3.0, "whole_residual": 0.4,
                           "contact_residual": 0.1, "hinge": 5.0})  # fmt: skip
-    assert some.dissipated == 1.0 + 1.0 + 5.0 + 2.0 + 3.0
-    assert some.whole_relative == pytest.approx(0.4 / 12.0)
-    assert some.contact_relative == pytest.approx(0.1 / 5.0)
+    assert some.dissipated == 1.0 + 1.0 + 5.0 + 2.0 + 3.0 - 1.0  # forward
+    assert some.whole_relative == pytest.approx(0.4 / 11.0)
+    assert some.contact_relative == pytest.approx(0.1 / 4.0)
     nothing = EnergyAudit(**dict.fromkeys(values, 0.0))
     assert nothing.whole_relative == nothing.contact_relative == 0.0

@@ -46,14 +46,15 @@ def pair(second, geometry):
 
 
 def ellipse(second, lateral, rolling):
-    """K, f22/delta, f23/delta^1.5 and log(a/b) by the second writing."""
+    """K, f11/delta, f22/delta, f23/delta^1.5 and log(a/b) by the second writing."""
     ratio = min(lateral, rolling) / max(lateral, rolling)
     k, stiff, area = (np.interp(ratio, second.curvatures, c) for c in second.ellipse)
     ab = area / (lateral + rolling)
     place = math.log(k if lateral < rolling else 1.0 / k)
-    c22, c23 = (math.exp(np.interp(place, second.kalker[0], c)) for c in second.kalker[1:])
+    c11, c22, c23 = (math.exp(np.interp(place, second.kalker[0], c)) for c in second.kalker[1:])
     stiffness = second.modulus * stiff / math.sqrt(lateral + rolling)
-    return stiffness, second.shear * ab * c22, second.shear * ab**1.5 * c23, place
+    f11, f22 = second.shear * ab * c11, second.shear * ab * c22
+    return stiffness, f11, f22, second.shear * ab**1.5 * c23, place
 
 
 @settings(max_examples=60, deadline=None)
@@ -62,7 +63,7 @@ def test_hertz_and_kalker_of_any_curvatures(second, lateral, rolling):
     """Johnson's formulas in the semi-axes' ratio, Kalker's table in their logarithms."""
     table = hertz.hertz_table(*STEEL)
     found = hertz.hertz_lookup(
-        lateral, rolling, table.stiffness, table.area, table.creep, table.spin,
+        lateral, rolling, table.stiffness, table.area, table.along, table.creep, table.spin,
         np.log(table.a_over_b),
     )  # fmt: skip
     # where two of Kalker's straight pieces meet between nodes of the package's table: 3e-4
@@ -129,10 +130,10 @@ def test_gap_and_what_acts_there(pair, shift, roll, zone):
     )
     if np.ptp(wheel) == np.ptp(rail) == 0.0:  # not where two arcs meet
         assert found[5] == pytest.approx(max(0.5 * (wheel[1] + rail[1]), 0.05), rel=1e-6)
-        stiffness, f22, f23, place = ellipse(second, found[5], found[6])
+        *expected, place = ellipse(second, found[5], found[6])
         forces = zone_contact(shift, roll, *limits, geometry)
         assert forces[:4] == (found[0], found[1], found[2], found[4])
-        assert forces[4:7] == pytest.approx((stiffness, f22, f23 / found[7]), rel=5e-4)
+        assert forces[4:8] == pytest.approx(tuple(expected), rel=5e-4)
         assert forces.log_ratio == pytest.approx(place, abs=1e-3)
 
 

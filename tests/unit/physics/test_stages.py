@@ -196,13 +196,14 @@ def test_wheels_of_a_section_act_together(system):
     s[state.ON_TRACK] = 1.0
     s[[state.TRACK_SIN, state.TRACK_COS], 0] = 0.6, 0.8
     powers = [state.HERTZ_ENERGY, state.IMPACT_POWER, state.CREEP_POWER, state.SPIN_POWER]
-    s[powers, 0] = 1.0, 2.0, 3.0, 4.0
+    powers.append(state.FORWARD_POWER)
+    s[powers, 0] = 1.0, 2.0, 3.0, 4.0, 5.0
     sides = [state.LOAD_LEFT, state.LOAD_RIGHT, state.LATERAL_LEFT, state.LATERAL_RIGHT]
     s[sides, 0] = 10.0, 20.0, 5.0, -7.0
     s[state.FORCE_PSI] = 9.0
     add_wheels = stage(system, contact.add_wheels)
     add_wheels(s, q, 0)
-    assert s[powers, 0].tolist() == [1.0 * axles, 2.0 * axles, 3.0 * axles, 4.0 * axles]
+    assert s[powers, 0].tolist() == [axles * k for k in (1.0, 2.0, 3.0, 4.0, 5.0)]
     assert s[sides, 0].tolist() == [10.0 * axles, 20.0 * axles, 5.0 * axles, -7.0 * axles]
     forces = s[state.FORCE_Y : state.FORCE_PSI + 1, 0]
     assert forces.tolist() == [2.0 * axles, -30.0 * axles, 9.0 * axles]  # on the wheelset
@@ -217,7 +218,10 @@ def test_wheels_of_a_section_act_together(system):
 
 def test_what_the_patches_add_up_begins_at_nothing(system):
     s = system.start.copy()
-    sums = np.r_[state.FORCE_PSI : state.SPIN_POWER + 1, state.LOAD_LEFT : state.LATERAL_RIGHT + 1]
+    sums = np.r_[
+        state.FORCE_PSI : state.FORWARD_POWER + 1, state.LOAD_LEFT : state.LATERAL_RIGHT + 1
+    ]
+    sums = np.r_[sums, state.AXLE_MOMENT, state.AXLE_DAMPING]
     s[sums] = 7.0
     stage(system, contact.clear_forces)(s, 0)
     assert not s[sums].any()

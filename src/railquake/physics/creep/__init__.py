@@ -1,18 +1,21 @@
 """Tangential contact force: Kalker's linear theory and its saturation (Eq. 8 of the paper).
 
-In the section there is no longitudinal motion, so F_x = 0 and ::
+::
 
-    F_y   = -f22 xi_y - f23 xi_sp                     (linear, Eq. 8)
-    f22   = G a b C22(a/b, nu)        f23 = G (a b)^1.5 C23(a/b, nu)
-    xi_y  = v_t / V        xi_sp = sin(contact angle from the axle) / rolling radius
+    F_x   = -f11 xi_x                    F_y = -f22 xi_y - f23 xi_sp          (linear, Eq. 8)
+    f11   = G a b C11(a/b, nu)           f22 = G a b C22      f23 = G (a b)^1.5 C23
+    xi_x  = (V - w r)/V                  xi_y = v_t / V
+    xi_sp = sin(contact angle from the axle) w / V
 
-v_t is the lateral velocity of the wheel relative to the rail in the contact plane.  (The relative
-roll rate adds nothing to the spin: its axis x lies in the contact plane, so it has no part about
-the contact normal.)  Friction bounds the force at mu N; a *law* says how it gets there.  Most
-reduce the magnitude of the linear force by a factor of tau = abs(linear force) / (mu N), with slope
-1 at tau = 0, so that Kalker's initial slope is kept exactly.  Where spin is large, as on a flange,
-the force turns as well: such a law is given the linear force by its causes and gives the bounded
-one.
+w is the axle's rate and r the contact point's distance from it (`axle`); where the train is slower
+than a bound, that bound stands for the V that divides, and a standing train has neither spin nor
+longitudinal creepage.  v_t is the lateral velocity of the wheel relative to the rail in the contact
+plane.  (The relative roll rate adds nothing to the spin: its axis x lies in the contact plane, so
+it has no part about the contact normal.)  Friction bounds the force at mu N; a *law* says how it
+gets there.  Most reduce the magnitude of the linear force by a factor of tau = abs(linear force) /
+(mu N), with slope 1 at tau = 0, so that Kalker's initial slope is kept exactly.  Where spin is
+large, as on a flange, the force turns as well: such a law is given the linear force by its causes
+and gives the bounded one.
 
 Each law is a file of this folder with its publication; a new one is found by lying here.
 """
@@ -85,7 +88,7 @@ def linear_force(
     f11, f22, f23 : float
         Creep coefficients, N, N and N m.
     creepages : (float, float, float)
-        xi_x, xi_y and xi_sp (1/m; or, with f23/r in the place of f23, xi_sp r).
+        xi_x, xi_y and xi_sp (1/m).
     """
     along, lateral, spin = creepages
     return LinearForce(-f11 * along, -f22 * lateral, -f23 * spin)
