@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import brentq
 
+from railquake.assembly.vehicle import sag_of
 from railquake.errors import InputError
 from railquake.physics.hinge import HINGE_LAWS, HingeLaw
-from railquake.physics.vehicle import GRAVITY
 
 if TYPE_CHECKING:
     from railquake.assembly.stability import ContactForces
@@ -129,14 +129,9 @@ def find_rest(of: Equilibrium) -> Rest:
     law = HINGE_LAWS[structure.hinge]
     count, _, hinge_at, _ = structure.degrees
     n = len(of.vehicle.mass)
-    weight = of.vehicle.mass.copy()
-    weight[0::3] = 0.0
-    weight[2::3] = 0.0
-    weight *= GRAVITY
-    # the suspension's own compression under the bodies' weight, wheelset held
-    sag = np.zeros(n)
-    if n > 3:
-        sag[:-3] = np.linalg.solve(of.vehicle.stiffness[:-3, :-3], weight[:-3])
+    weight = of.vehicle.weight
+    # a car with finite rotations is drawn as it stands
+    sag = np.zeros(n) if of.vehicle.is_finite else sag_of(of.vehicle.stiffness, weight)
     secant = structure.parameters.k0
 
     # first guess: the structure under the weight on its track, the car carried along
@@ -201,7 +196,7 @@ class _Unknowns:
         out = np.empty(len(unknown))
         out[:count] = structure.stiffness @ place - structure.reaction * on_node
         out[hinge_at] += self.secant * place[hinge_at]
-        out[count:] = self.of.vehicle.stiffness @ vehicle - self.weight
+        out[count:] = self.of.vehicle.held_by(vehicle) - self.weight
         out[-3:] -= on_wheelset
         return out / self.weight.sum()
 

@@ -28,13 +28,13 @@ from railquake.assembly.start import (
     start_state,
 )
 from railquake.assembly.supports import Structure, structure_of
-from railquake.assembly.vehicle import VehicleMatrices, vehicle_matrices
+from railquake.assembly.vehicle import VehicleMatrices, refuse_unstable, vehicle_matrices
 from railquake.errors import InputError
 from railquake.inputs.identity import files_of
 from railquake.march import frames
 from railquake.march.compiler import CUDA, SCALAR, Kernel, Target, bind
 from railquake.march.rows import Layout, layout_of
-from railquake.march.slots import chosen, solving
+from railquake.march.slots import chosen, joining, solving
 from railquake.memory import Bounded
 from railquake.physics.hinge import HINGE_LAWS
 from railquake.physics.profiles import Geometry
@@ -146,6 +146,7 @@ class System:
         how = self.scenario.solver.hinge_solve
         linearised = not alone if how is None else how == "linearised"
         laws = chosen({**self.choices, "engine": engine})
+        laws.update(joining(self.vehicle.joints.joined))
         laws.update(solving(self.structure.hinge, linearised, abreast=not alone))
         return bind(
             entries[engine], target, laws, _layout(self.structure, self.vehicle, target.lanes)
@@ -238,13 +239,21 @@ def _stamps(scenario: Scenario) -> tuple[tuple[str, int, int], ...]:
 
 def _layout(structure: Structure, vehicle: VehicleMatrices, lanes: int = 1) -> Layout:
     law = HINGE_LAWS[structure.hinge]
-    return layout_of(law, len(vehicle.bodies), vehicle.block, structure.degrees, lanes)
+    return layout_of(
+        law,
+        len(vehicle.bodies),
+        vehicle.block,
+        structure.degrees,
+        lanes,
+        vehicle.joints.joined,
+    )
 
 
 def _assemble_at_rest(scenario: Scenario) -> _AtRest:
     """Everything but the ground's motion."""
     solver = scenario.solver
     vehicle = vehicle_matrices(scenario.vehicle)
+    refuse_unstable(vehicle)
     structure = structure_of(scenario.support, solver, scenario.vehicle.mass)
     layout = _layout(structure, vehicle)
     choices = {
@@ -252,6 +261,7 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
         "restitution law": scenario.wheelrail.restitution_law,
         "hinge law": structure.hinge,
         "structure": structure.choice,
+        "kinematics": scenario.vehicle.kinematics,
         "contact method": solver.contact,
     }
     geometry = build_geometry(scenario.wheelrail)
@@ -280,8 +290,12 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
     start = start_state(blank, constants, geometry, at, track, stages, layout, vehicle)
 
     contact = stability.linear_contact(at.vehicle[-3:], at.drift, forces, track)
-    held = stability.with_contact(contact, vehicle.stiffness, vehicle.damping)
-    critical = stability.critical_time_step(vehicle.mass, *held, solver.phi, solver.psi)
+    critical = min(
+        stability.critical_time_step(
+            vehicle.mass, *stability.with_contact(contact, *matrices), solver.phi, solver.psi
+        )
+        for matrices in vehicle.states
+    )
     if solver.step > critical:
         raise InputError(
             f"solver.dt: {solver.step:g} s is above the critical time step of {critical:.3g} s "

@@ -98,12 +98,24 @@ _VEHICLE = (
     row("DAMPING", "N s/m, N s or N m s", "C_v", rows="VEHICLE_ENTRIES"),
 )
 
+# of a car with finite rotations (`joints`), one after the other
+_JOINTS = (
+    row("TIES", "m", "points of each element (`joint.Tie`)", rows="TIE_ROWS"),
+    row("GAPS", "m", "d_0 of each element, y and z", rows="GAP_ROWS"),
+    row("SPRINGS", "SI", "springs and dashpots (`joint.Spring`)", rows="SPRING_ROWS"),
+    row("STOP_SIDES", "1, 1 and N s/m", "of each stop (`joint.Sides`)", rows="SIDES_ROWS"),
+    row("RAMP_TRAVEL", "m", "where each stop's stiffness changes", rows="RAMP_ROWS"),
+    row("RAMP_SLOPE", "N/m", "and by how much", rows="RAMP_ROWS"),
+    row("KNEES", "m/s and N s/m", "knee, damping below and beyond it", rows="KNEE_ROWS"),
+)
+
 CONSTANT_GROUPS: dict[str, tuple[Row, ...]] = {
     "time steps": _TIME,
     "structure": _STRUCTURE,
     "contact": _CONTACT,
     "measures": _MEASURES,
     "vehicle": _VEHICLE,
+    "joints": _JOINTS,
 }
 CONSTANT_ROWS: tuple[Row, ...] = tuple(row for group in CONSTANT_GROUPS.values() for row in group)
 # the hinge's own rows follow: `rows.hinge_parts`

@@ -286,6 +286,12 @@ _VEHICLE = (
     row("VEHICLE_A_OLD", "m/s2 or rad/s2", "acceleration before", rows="DOFS", released=True),
     row("VEHICLE_STEP", "m or rad", "last increment of the displacement", rows="DOFS"),
 )
+# of a car with finite rotations (`joints`)
+_JOINTS = (
+    row("BODY_SIN", "1", "sine of each body's roll", rows="TURNED"),
+    row("BODY_COS", "1", "its cosine", rows="TURNED"),
+    row("STOP_TRAVEL", "m", "largest travel of each stop", rows="STOPS"),
+)
 
 _BEFORE = {
     "ground": _GROUND,
@@ -298,7 +304,7 @@ _BEFORE = {
     "suspension between its evaluations": _SUSPENSION,
     "energy": _ENERGY,
 }
-_AFTER = {"frame": _FRAME, "prescribed track": _PRESCRIBED, "vehicle": _VEHICLE}
+_AFTER = {"frame": _FRAME, "prescribed track": _PRESCRIBED, "vehicle": _VEHICLE, "joints": _JOINTS}
 
 
 def _measured() -> tuple[Row, ...]:
