@@ -111,9 +111,7 @@ def joints_of(vehicle: Vehicle, bodies: list[Any], sag: Array) -> Joints:
     """
     number = {body.name: k for k, body in enumerate(bodies)}
     springs = _springs(vehicle, number)
-    borne = {
-        place: _loaded(spring, place, bodies, sag) for place, spring in springs.items()
-    }
+    borne = {place: _loaded(spring, place, bodies, sag) for place, spring in springs.items()}
     elements = [("spring", place) for place in borne]
     sides, ramps, ends, names, knees = [], [], [], [], []
     for stop in vehicle.stops:
@@ -247,9 +245,7 @@ def _loaded(spring: Spring, place: _Place, bodies: list[Any], sag: Array) -> Spr
     lower_z = bodies[place.lower].height - place.lower_height
     y = upper[0] - upper_z * upper[2] - (lower[0] - lower_z * lower[2])
     z = upper[1] + place.y * upper[2] - (lower[1] + place.y * lower[2])
-    return spring._replace(
-        ny=spring.ky * y, nz=spring.kz * z, nr=spring.kr * (upper[2] - lower[2])
-    )
+    return spring._replace(ny=spring.ky * y, nz=spring.kz * z, nr=spring.kr * (upper[2] - lower[2]))
 
 
 def _sides(stop: Stop, sign: float) -> Sides:
@@ -261,7 +257,7 @@ def _sides(stop: Stop, sign: float) -> Sides:
 
 def _ramps(stop: Stop) -> Array:
     """Travel at which the stiffness changes, and by how much."""
-    travel, force = (np.array(values) for values in stop.table)
+    travel, force = (np.array(values) for values in stop.force_over_travel)
     slopes = np.diff(force) / np.diff(travel)
     changes = np.diff(slopes, prepend=0.0)
     kept = changes != 0.0

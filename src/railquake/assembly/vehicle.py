@@ -12,7 +12,7 @@ from railquake.assembly.joints import NO_JOINTS, Joints, Suspension, joints_of
 from railquake.assembly.stability import fastest_rate
 from railquake.errors import InputError
 from railquake.march.order import lateral_block
-from railquake.physics.suspension import element_matrix, element_row
+from railquake.physics.suspension import element_matrix, element_row, roll_row
 from railquake.physics.vehicle import GRAVITY, fixed_wheelset_modes
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ class VehicleMatrices:
 
 
 def vehicle_matrices(vehicle: Vehicle) -> VehicleMatrices:
-    """Assemble mass, damping and stiffness of a vehicle.
+    """Assemble mass, damping and stiffness of a vehicle; its joints too if it turns by any angle.
 
     Parameters
     ----------
@@ -107,6 +107,12 @@ def vehicle_matrices(vehicle: Vehicle) -> VehicleMatrices:
     VehicleMatrices
     """
     bodies = bodies_of(vehicle)
+    linear = _linear_matrices(vehicle, bodies)
+    return linear if vehicle.kinematics == "linear" else _with_gravity(linear, vehicle, bodies)
+
+
+def _linear_matrices(vehicle: Vehicle, bodies: list[Body]) -> VehicleMatrices:
+    """Springs, dashpots and anti-roll bars about the undeformed position, gravity left out."""
     number = {body.name: i for i, body in enumerate(bodies)}
     mass = np.array([value for b in bodies for value in (b.mass, b.mass, b.roll_inertia)])
     matrices = []
@@ -134,15 +140,12 @@ def vehicle_matrices(vehicle: Vehicle) -> VehicleMatrices:
                 values.append(getattr(element, coefficient))
         if coefficient == "stiffness":
             for bar in vehicle.anti_roll_bars:
-                row = np.zeros(3 * len(bodies))
-                row[[3 * number[name] + 2 for name in bar.bodies]] = 1.0, -1.0
-                rows.append(row)
+                rows.append(roll_row(len(bodies), *(number[name] for name in bar.bodies)))
                 values.append(bar.stiffness)
         matrices.append(element_matrix(rows, values, 3 * len(bodies)))
-    names = tuple(b.name for b in bodies)
-    damping, stiffness = matrices
-    linear = VehicleMatrices(names, mass, damping, stiffness, without_gravity=stiffness)
-    return linear if vehicle.kinematics == "linear" else _with_gravity(linear, vehicle, bodies)
+    return VehicleMatrices(
+        tuple(b.name for b in bodies), mass, matrices[0], matrices[1], matrices[1]
+    )
 
 
 def bodies_of(vehicle: Vehicle) -> list[Body]:
@@ -154,7 +157,13 @@ def sag_of(stiffness: Array, weight: Array) -> Array:
     """A linear suspension's own compression under the bodies' weight, wheelset held."""
     sag = np.zeros(len(weight))
     if len(weight) > 3:
-        sag[:-3] = np.linalg.solve(stiffness[:-3, :-3], weight[:-3])
+        try:
+            sag[:-3] = np.linalg.solve(stiffness[:-3, :-3], weight[:-3])
+        except np.linalg.LinAlgError:
+            raise InputError(
+                "vehicle: its springs do not hold every motion of its bodies; check "
+                "springs.*.lateral: vertical springs in the middle hold no roll"
+            ) from None
     return sag
 
 
@@ -200,6 +209,6 @@ def refuse_unstable(vehicle: VehicleMatrices) -> None:
     )
     raise InputError(
         f"vehicle: {vehicle.bodies[body]} falls over by its own weight (lowest mode "
-        f"{frequencies[0]:.3g} Hz, unstable); {more}; or take kinematics = \"linear\", which "
+        f'{frequencies[0]:.3g} Hz, unstable); {more}; or take kinematics = "linear", which '
         "leaves gravity's moments out"
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -168,46 +169,19 @@ class Stop(_Element):
         if self.gap is not None and self.stiffness is None:
             raise inconsistent("is needed beside gap", "stiffness")
         if self.travel is not None:
-            if self.force is None or len(self.force) != len(self.travel):
-                found = 0 if self.force is None else len(self.force)
-                raise inconsistent(
-                    f"needs as many values as travel ({len(self.travel)}), found {found}", "force"
-                )
-            if len(self.travel) < 2:
-                raise inconsistent("needs two values or more", "travel")
-            if self.travel[0] != 0.0 or self.force[0] != 0.0:
-                raise inconsistent(
-                    "table must begin with no force at no travel, found "
-                    f"{self.force[0]:g} N at {self.travel[0]:g} m",
-                    "force",
-                )
-            for k in range(1, len(self.travel)):
-                if self.travel[k] <= self.travel[k - 1]:
-                    raise inconsistent(
-                        f"must rise, found {self.travel[k - 1]:g} m, then {self.travel[k]:g} m",
-                        "travel",
-                    )
-                if self.force[k] < self.force[k - 1]:
-                    raise inconsistent(
-                        f"must not fall: {self.force[k - 1]:g} N, then {self.force[k]:g} N at "
-                        f"{self.travel[k]:g} m",
-                        "force",
-                    )
-            if self.force[-1] == self.force[-2]:
-                raise inconsistent("must rise at its end, since its last slope goes on", "force")
+            _refuse_bad_table(self.travel, self.force or ())
         return self
 
     @property
-    def table(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def force_over_travel(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Travel [m] and force [N]; beyond the last point its last slope goes on."""
+        travel, force = self.travel, self.force
         if self.gap is not None:
             assert self.stiffness is not None  # by the validator above
-            travel, force = (0.0, self.gap, self.gap + 1.0), (0.0, 0.0, self.stiffness)
-            if self.gap == 0.0:
-                travel, force = travel[1:], force[1:]
-        else:
-            assert self.travel is not None and self.force is not None
-            travel, force = self.travel, self.force
+            start = (0.0,) if self.gap > 0.0 else ()
+            travel = (*start, self.gap, self.gap + 1.0)
+            force = (*start, 0.0, self.stiffness)
+        assert travel is not None and force is not None  # by the validator above
         return (
             tuple(self.travel_factor * value for value in travel),
             tuple(self.force_factor * value for value in force),
@@ -217,6 +191,31 @@ class Stop(_Element):
     def longest(self) -> float | None:
         """Travel at which the table ends [m]; a gap with a stiffness has no end."""
         return None if self.travel is None else self.travel_factor * self.travel[-1]
+
+
+def _refuse_bad_table(travel: tuple[float, ...], force: tuple[float, ...]) -> None:
+    """Refuse a table of a stop that falls, or does not begin at zero."""
+    if len(force) != len(travel):
+        raise inconsistent(
+            f"needs as many values as travel ({len(travel)}), found {len(force)}", "force"
+        )
+    if len(travel) < 2:
+        raise inconsistent("needs two values or more", "travel")
+    if travel[0] != 0.0 or force[0] != 0.0:
+        raise inconsistent(
+            f"table must begin with no force at no travel, found {force[0]:g} N at {travel[0]:g} m",
+            "force",
+        )
+    for before, after in pairwise(travel):
+        if after <= before:
+            raise inconsistent(f"must rise, found {before:g} m, then {after:g} m", "travel")
+    for (before, after), at in zip(pairwise(force), travel[1:], strict=True):
+        if after < before:
+            raise inconsistent(
+                f"must not fall: {before:g} N, then {after:g} N at {at:g} m", "force"
+            )
+    if force[-1] == force[-2]:
+        raise inconsistent("must rise at its end, since its last slope goes on", "force")
 
 
 class AntiRollBar(InputModel):
@@ -325,15 +324,17 @@ class Vehicle(FromPreset):
         heaviest = max(self.bodies, key=lambda body: body.mass)
         low = [(f"bodies.{heaviest.name}.height", heaviest.height)]
         for key, group in self._elements():
-            for element in group:
-                if isinstance(element, _Element):
-                    low.append((f"{key}.{element.name}.height", min(element.end_heights)))
-        for key, height in low:
+            low += [
+                (f"{key}.{element.name}.height", min(element.end_heights))
+                for element in group
+                if isinstance(element, _Element)
+            ]
+        for place, height in low:
             if height < axle - 1e-9:
                 raise inconsistent(
                     f"{height:g} m lies below the axle, which is {axle:g} m above the rails; "
                     "heights are measured from the rails upwards",
-                    key,
+                    place,
                 )
         return self
 

@@ -29,7 +29,17 @@ from railquake.physics.joint import Sides, Spring, Tie
 if TYPE_CHECKING:
     from railquake.physics.hinge import HingeLaw
 
-__all__ = ["UNJOINED", "USUAL", "Joined", "Layout", "Numbers", "constant", "layout_of", "size", "state"]
+__all__ = [
+    "UNJOINED",
+    "USUAL",
+    "Joined",
+    "Layout",
+    "Numbers",
+    "constant",
+    "layout_of",
+    "size",
+    "state",
+]
 
 
 class Numbers:

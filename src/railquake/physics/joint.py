@@ -1,7 +1,7 @@
 """Joints between bodies that turn by any angle: springs, dashpots, stops and anti-roll bars.
 
-A joint holds a point of an upper body to a point of a lower one.  What it feels is, in the mean axes
-of the two bodies ::
+A joint holds a point of an upper body to a point of a lower one.  What it feels is, in the mean
+axes of the two bodies ::
 
     d = R(phi_m)^T (P_u - P_l) - d_0        phi_m = (phi_u + phi_l)/2        theta = phi_u - phi_l
 
@@ -9,7 +9,7 @@ of the two bodies ::
 both ends, so that the moment of what it bears is shared half and half.  Forces follow from ::
 
     V = ky dy^2/2 + kz dz^2/2 + kr theta^2/2 + ny dy + nz dz + nr theta + stops
-    D = cy dy'^2/2 + cz dz'^2/2 + cr theta'^2/2 + knees
+    D = cy dy'^2/2 + cz dz'^2/2, and of dashpots with a knee
 
 n being what the joint bears at rest: the weight above it.  With y to the right, z down and phi
 turning the right side down, R(phi) = [[cos, -sin], [sin, cos]].

@@ -1,4 +1,4 @@
-"""A car by itself, its wheelset held: how it leans under a steady force, how it answers a motion."""
+"""A car by itself, its wheelset held: how it leans, and how it answers a motion."""
 
 from __future__ import annotations
 
