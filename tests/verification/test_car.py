@@ -10,11 +10,9 @@ import math
 import numpy as np
 import pytest
 
-from railquake.assembly import held_car, refuse_unstable, vehicle_matrices
+from railquake.assembly import refuse_unstable, vehicle_matrices
 from railquake.errors import InputError
 from railquake.inputs.vehicle import Vehicle
-from railquake.march.compiler import PYTHON
-from railquake.march.held import march_held
 from railquake.physics.vehicle import GRAVITY, fixed_wheelset_modes
 from railquake.probe import lean, shake_held
 
@@ -92,31 +90,6 @@ def test_the_manchester_car_is_shaken_as_the_reference(shared):
         off = np.abs(np.interp(at, found.time, history) - expected).max()
         assert off < 1e-3 * np.abs(expected).max(), name
     assert abs(found.energy_residual) < 1e-6
-
-
-def marched(vehicle, lateral, steps=100, step=1e-4):
-    """A short history in plain Python, with the vertical motion of half the lateral one."""
-    held = held_car(vehicle, step, 10)
-    drive = np.column_stack([lateral, 0.5 * np.abs(lateral)])
-    block = held.layout.state_blocks["VEHICLE_X"]
-    history = np.empty((len(drive), block.stop - block.start))
-    end = held.start.copy()
-    rows_kept = np.arange(block.start, block.stop)
-    held.bind(march_held, PYTHON)(end, held.constants, drive, rows_kept, history)
-    return history, held.energy_residual(end)
-
-
-JOLT = 30.0 * np.sin(np.linspace(0.0, 2.0 * math.pi, 81))  # onto the stops within 80 ms
-
-
-@pytest.mark.parametrize("name", ["manchester", "crh380a", "bart-under-gravity"])
-def test_a_mirrored_jolt_moves_the_car_the_mirrored_way(name):
-    here, residual = marched(car(name), JOLT)
-    there, _ = marched(car(name), -JOLT)
-    bodies = here.shape[1] // 3
-    sign = np.concatenate([np.full(2 * bodies, -1.0), np.ones(bodies)])
-    np.testing.assert_allclose(there, sign * here, atol=1e-12)
-    assert abs(residual) < 1e-6 * 100.0  # a coarse step: 1e-4 s
 
 
 def test_a_stop_left_out_would_be_seen(shared):

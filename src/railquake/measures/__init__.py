@@ -145,6 +145,13 @@ MEASURES: tuple[Measure, ...] = (
         place=StateRow("PEAK_LOAD"),
     ),
     Measure(
+        "stop_use_peak", Kind.TRAIN, "1", "use of stops", "largest use of a bump stop",
+        optional=True,
+        meaning="largest travel of a stop over that at which its table ends; beyond 1 its last "
+        "slope has gone on. None for a car without such stops",
+        place=WorkedOut("stop_use"),
+    ),
+    Measure(
         "wheel_unloading_peak", Kind.TRAIN, "1", "unloading", "peak unloading of one side",
         meaning="1 minus the lowest low-passed load of a side over the static one; 1: unloaded",
         place=WorkedOut("wheel_unloading"),

@@ -10,6 +10,8 @@ from importlib.metadata import version as installed_version
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from railquake import measures
 from railquake.inputs.support import Pier
 from railquake.measures import AttributeOf, EventTime, Place, StateRow, StateTime, WorkedOut
@@ -104,6 +106,13 @@ def _wheel_unloading(response: Response) -> float:
     return 1.0 - _row(response, "LOWEST_LOAD") / response.system.static_wheel_load
 
 
+def _stop_use(response: Response) -> float | None:
+    layout, ends = response.system.layout, np.array(response.system.vehicle.joints.ends)
+    travel = response.end[layout.state_blocks["STOP_TRAVEL"], 0]
+    tables = np.isfinite(ends)
+    return float((travel[tables] / ends[tables]).max()) if tables.any() else None
+
+
 def _speed(response: Response) -> float:
     return response.steps / max(response.march_s, 1e-9)
 
@@ -139,4 +148,5 @@ _WORKED_OUT: Mapping[str, Callable[[Response], Any]] = {
     "uplift_ratio": _uplift_ratio,
     "versions": lambda _: versions(),
     "wheel_unloading": _wheel_unloading,
+    "stop_use": _stop_use,
 }
