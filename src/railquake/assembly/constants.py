@@ -113,6 +113,7 @@ def fill_structure(q: Array, structure: Structure, layout: Layout) -> None:
     q[blocks["K"]] = structure.stiffness[upper]
     q[blocks["C"]] = structure.damping[upper]
     q[blocks["OFFSET"]] = structure.offset
+    q[blocks["HINGE_DAMPING"]] = structure.hinge_damping
     q[constant.REACTION] = structure.reaction
     q[blocks["HINGE"]] = structure.parameters
 

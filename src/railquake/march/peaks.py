@@ -38,6 +38,7 @@ def measure_structure(S: Array, lane: int) -> None:
     raise_peak(S, state.PEAK_U_A, S[state.U_A, lane] + S[state.GROUND, lane], lane)
     raise_peak(S, state.PEAK_THETA1, S[state.THETA1, lane], lane)
     raise_peak(S, state.PEAK_MOMENT, S[state.MOMENT, lane], lane)
+    raise_peak(S, state.PEAK_DAMPING_MOMENT, S[state.DAMPING_MOMENT, lane], lane)
     raise_peak(S, state.PEAK_THETA2, S[state.THETA2, lane], lane)
 
 

@@ -25,7 +25,15 @@ _STRUCTURE = (
     row("GROUND_LOAD", "kg", "what the ground's acceleration acts on", rows="STRUCTURE"),
     row("MASS", "kg or kg m2", "masses and inertias (Eq. 9)", rows="STRUCTURE"),
     row("K", "N/m, N or N m", "stiffness, hinge apart (Eq. 10)", rows="STRUCTURE_ENTRIES"),
-    row("C", "N s/m, N s or N m s", "damping", rows="STRUCTURE_ENTRIES"),
+    row("C", "N s/m, N s or N m s", "damping, hinge apart", rows="STRUCTURE_ENTRIES"),
+    block(
+        "HINGE_DAMPING",
+        "of the hinge itself (`pier.HingeDamping`)",
+        (
+            ("DAMPING_CONSTANT", "N m s", "whatever the hinge does"),
+            ("DAMPING_PER_TANGENT", "s", "times the hinge's tangent"),
+        ),
+    ),
     row("FLEX", "m/N, 1/N or 1/(N m)", "inverse of Newmark's matrix", rows="STRUCTURE_ENTRIES"),
     block(
         "OFFSET",

@@ -58,6 +58,8 @@ _STRUCTURE = (
     row("UNBALANCED", "N or N m", "what a step's increments must balance", rows="STRUCTURE"),
     row("STRUCTURE_STEP", "m or rad", "increments of the last step", rows="STRUCTURE"),
     row("MOMENT", "N m", "moment of the hinge", "base_moment_n_m"),
+    row("TANGENT", "N m/rad", "tangent of the hinge"),
+    row("DAMPING_MOMENT", "N m", "of the hinge's damping, beside its own", "damping_moment_n_m"),
 )  # fmt: skip
 
 _TRACK = (

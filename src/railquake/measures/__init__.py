@@ -104,6 +104,14 @@ MEASURES: tuple[Measure, ...] = (
         factor=1e-6, shown_unit="MN m", meaning="of the hinge", place=StateRow("PEAK_MOMENT"),
     ),
     Measure(
+        "damping_moment_peak_n_m", Kind.STRUCTURE, "N m", "damping moment",
+        "peak damping moment at the hinge",
+        factor=1e-6, shown_unit="MN m",
+        meaning="of the damping beside the hinge, which the pier's foot bears over its "
+        "`base_moment_peak_n_m`; zero with `damping_of = \"column\"`",
+        place=StateRow("PEAK_DAMPING_MOMENT"),
+    ),
+    Measure(
         "top_rotation_peak_rad", Kind.STRUCTURE, "rad", "top rotation", "peak rotation of the top",
         factor=1e3, shown_unit="mrad", meaning=r"$\theta_2$", place=StateRow("PEAK_THETA2"),
         paired=True,
