@@ -1,6 +1,7 @@
 """The rows of the constants ``Q[row, lane]``: everything of a run that stays fixed."""
 
 from railquake.march.declaration import Row, block, row
+from railquake.measures.housner import PERIODS
 
 __all__ = ["CONSTANT_GROUPS", "CONSTANT_ROWS"]
 
@@ -95,6 +96,12 @@ _MEASURES = (
         "FILTER_BY",
         "low-pass of the frame means (`low_pass.Coefficients`)",
         [(f"FILTER_{name}", "1", f"{name.lower()}") for name in ("B0", "B1", "B2", "A1", "A2")],
+    ),
+    row(
+        "SWING_BY",
+        "1",
+        "a frame's step of each oscillator on the track (`oscillator.Step`)",
+        rows=4 * len(PERIODS),
     ),
 )
 

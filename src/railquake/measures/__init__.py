@@ -69,6 +69,19 @@ MEASURES: tuple[Measure, ...] = (
         meaning=r"$\frac{\pi}{2g}\int a^2 dt$", place=AttributeOf("system.ground.arias_intensity"),
     ),
     Measure(
+        "si_ground_m_s", Kind.GROUND, "m/s", "SI", "spectral intensity of the ground",
+        meaning="Housner's: mean of the pseudo-velocity spectrum of the lateral motion from 0.1 to "
+        "2.5 s, 20 % damping; 1 m/s is 100 kine",
+        place=WorkedOut("spectral_intensity"),
+    ),
+    Measure(
+        "jma_intensity", Kind.GROUND, "1", "JMA intensity", "JMA instrumental intensity",
+        optional=True,
+        meaning="of the lateral motion, and of the vertical one where there is one; JMA's own "
+        "takes three components; none for a ground at rest",
+        place=WorkedOut("jma_intensity"),
+    ),
+    Measure(
         "sa_t1_m_s2", Kind.GROUND, "m/s2", "Sa(T₁)", "spectral acceleration at T₁",
         optional=True,
         meaning="pseudo-spectral acceleration of the lateral motion, 5 % damping, at the "
@@ -94,6 +107,22 @@ MEASURES: tuple[Measure, ...] = (
         "pba_m_s2", Kind.STRUCTURE, "m/s2", "PBA", "peak bridge acceleration",
         meaning="of the pier's top, absolute; at grade the ground's", place=StateRow("PEAK_U_A"),
         paired=True, intensity=Intensity(2, "pba", "Peak Floor Acceleration", "mps2"),
+    ),
+    Measure(
+        "track_velocity_peak_m_s", Kind.STRUCTURE, "m/s", "track velocity",
+        "peak velocity of the track",
+        meaning="lateral, absolute: the ground's as in `pgv_m_s` and the track's relative to it; "
+        "one axis for piers and at grade, where it is the ground's",
+        place=StateRow("PEAK_TRACK_V"),
+        intensity=Intensity(
+            7, "track_velocity", "Peak Floor Velocity", "mps", with_uplift=False
+        ),
+    ),
+    Measure(
+        "si_track_m_s", Kind.STRUCTURE, "m/s", "SI of the track",
+        "spectral intensity of the track",
+        meaning="as `si_ground_m_s`, of the track's absolute lateral motion, seen once a frame",
+        place=WorkedOut("track_intensity"),
     ),
     Measure(
         "hinge_rotation_peak_rad", Kind.STRUCTURE, "rad", "hinge rotation", "peak hinge rotation",

@@ -48,7 +48,7 @@ def test_structure_keeps_its_energy_to_the_last_digits(damping_of):
 
     begun, before, work = energy(), x, 0.0
     for _ in range(40):
-        move_ground(s, 0)
+        move_ground(s, q, 0)
         move_structure(s, q, 0)
         x = s[state.U : state.U + 3, 0].copy()
         work += node @ (x - before)
