@@ -45,7 +45,10 @@ def vehicle_matrices(vehicle):
 
 
 def column_matrices(pier):
-    """M, C, K of a column by its ends' rotations from the chord; C on the first two modes."""
+    """M, C, K of a column by its ends' rotations from the chord; C on the first two modes.
+
+    The hinge's damping is in C where it is that of its initial stiffness.
+    """
     length, ei = pier.length, pier.youngs_modulus * pier.second_moment_of_area
     from_chord = np.array([[1.0 / length, 1.0, 0.0], [1.0 / length, 0.0, 1.0]])
     stiffness = from_chord.T @ (ei / length * np.array([[4.0, 2.0], [2.0, 4.0]])) @ from_chord
@@ -53,7 +56,8 @@ def column_matrices(pier):
     whole = stiffness + np.diag([0.0, pier.bouc_wen.k0, 0.0])
     w = np.sqrt(np.sort(np.linalg.eigvals(whole / mass[:, None]).real)[:2])
     a, b = np.linalg.solve(np.column_stack([0.5 / w, 0.5 * w]), 2 * [pier.damping_ratio])
-    return mass, a * np.diag(mass) + b * whole, stiffness
+    damped = {"column": stiffness, "initial": whole}[pier.damping_of]
+    return mass, a * np.diag(mass) + b * damped, stiffness
 
 
 def hinge_rates(h, x, v, z, eps, largest):

@@ -13,11 +13,13 @@ from railquake.errors import InputError
 from railquake.inputs.profile import flange_tip
 from railquake.march.order import kernel_order
 from railquake.march.packed import unpacked, upper_triangle
+from railquake.measures import housner
 from railquake.physics import newmark
 from railquake.physics.contact_table import axis_cells
 from railquake.physics.derailment import ROLL_LIMIT, SHIFT_LIMIT
 from railquake.physics.impact import RESTITUTION_LAWS
 from railquake.physics.low_pass import low_pass_coefficients
+from railquake.physics.oscillator import oscillator_step
 from railquake.physics.vehicle import GRAVITY
 
 if TYPE_CHECKING:
@@ -54,6 +56,12 @@ def constants_of(
     q[constant.STATIC_WHEEL_LOAD] = static_wheel_load(vehicle)
     q[layout.constant_blocks["FILTER_BY"]] = low_pass_coefficients(
         solver.lateral_force_filter, solver.step * frame_steps(solver)
+    )
+    q[layout.constant_blocks["SWING_BY"]] = np.ravel(
+        [
+            oscillator_step(period, housner.DAMPING, solver.step * frame_steps(solver))
+            for period in housner.PERIODS
+        ]
     )
     fill_vehicle(q, vehicle, layout)
     _fill_wheelrail(q, scenario.wheelrail, scenario.vehicle.speed, layout)
@@ -117,6 +125,7 @@ def fill_structure(q: Array, structure: Structure, layout: Layout) -> None:
     q[blocks["K"]] = structure.stiffness[upper]
     q[blocks["C"]] = structure.damping[upper]
     q[blocks["OFFSET"]] = structure.offset
+    q[blocks["HINGE_DAMPING"]] = structure.hinge_damping
     q[constant.REACTION] = structure.reaction
     q[blocks["HINGE"]] = structure.parameters
 

@@ -31,14 +31,15 @@ class LoadedHinge:
     ----------
     rotation : float
         rad.
-    moment : float
-        N m, as the law gives it there.
+    moment, tangent : float
+        N m and N m/rad, as the law gives them there.
     state : named tuple
         Of the law.
     """
 
     rotation: float
     moment: float
+    tangent: float
     state: Any
 
 
@@ -56,9 +57,10 @@ def loaded_hinge(law: HingeLaw, parameters: Any, moment: float) -> LoadedHinge:
 
     def turned(at: LoadedHinge, by: float) -> LoadedHinge:
         answer = law.advance(at.rotation, at.state, parameters, by, 0.0)
-        return LoadedHinge(at.rotation + answer.step, answer.moment, law.standing(answer.state))
+        turned_to = at.rotation + answer.step
+        return LoadedHinge(turned_to, answer.moment, answer.tangent, law.standing(answer.state))
 
-    at = LoadedHinge(0.0, 0.0, law.virgin)
+    at = LoadedHinge(0.0, 0.0, parameters.k0, law.virgin)
     if moment != 0.0:
         increment = moment / parameters.k0 / 100.0
         for _ in range(20_000):
@@ -73,7 +75,8 @@ def loaded_hinge(law: HingeLaw, parameters: Any, moment: float) -> LoadedHinge:
             )
         last = brentq(lambda by: turned(at, by).moment - moment, 0.0, increment, xtol=1e-18)
         at = turned(at, float(last))
-    return LoadedHinge(at.rotation, turned(at, 0.0).moment, at.state)
+    held = turned(at, 0.0)
+    return LoadedHinge(at.rotation, held.moment, held.tangent, at.state)
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ from railquake.assembly.start import (
 from railquake.assembly.supports import Structure, structure_of
 from railquake.assembly.vehicle import VehicleMatrices, refuse_unstable, vehicle_matrices
 from railquake.errors import InputError
+from railquake.inputs.ground_motion.motion import cumulative_trapezoid, without_line
 from railquake.inputs.identity import files_of
 from railquake.march import frames
 from railquake.march.compiler import CUDA, SCALAR, Kernel, Target, bind
@@ -71,8 +72,8 @@ class System:
     constants : array, shape (constant rows, 1)
     geometry : Geometry
         Profiles and contact table.
-    drive : array, shape (frames + 1, 2 or 8)
-        Ground acceleration (and prescribed track) at the frames' ends.
+    drive : array, shape (frames + 1, 3 or 9)
+        Ground acceleration and velocity (and prescribed track) at the frames' ends.
     choices : dict
         What stands in the slots (`slots.SLOTS`): name of the choice by name of the slot.
     critical_dt : float
@@ -319,7 +320,10 @@ def _rounded_down(value: float) -> float:
 
 
 def _drive(scenario: Scenario, ground: GroundMotion, frame: float, structure: Structure) -> Array:
-    """Ground acceleration at the frames' ends, by linear interpolation of the records."""
+    """The ground at the frames' ends, by linear interpolation of the records.
+
+    Its lateral velocity is corrected as in `GroundMotion.pgv`.
+    """
     frames = max(1, math.ceil(ground.duration / frame - 1e-9))
     times: Array = frame * np.arange(frames + 1, dtype=np.float64)
     columns: list[Array] = [np.interp(times, ground.time, ground.acceleration)]
@@ -329,6 +333,7 @@ def _drive(scenario: Scenario, ground: GroundMotion, frame: float, structure: St
     else:
         # recorded positive up, z is positive down
         columns.append(-np.interp(times, vertical.time, vertical.acceleration, right=0.0))
+    columns.append(without_line(cumulative_trapezoid(columns[0], frame)))
     if structure.prescribed is not None:
         columns += structure.prescribed(times)
     return np.ascontiguousarray(np.column_stack(columns))

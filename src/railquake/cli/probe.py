@@ -110,12 +110,12 @@ def probe_motion(
 ) -> None:
     """Read a record and measure it.
 
-    PGA, PGV, Arias intensity, duration, and a check of the baseline.  Where a file holds several
+    PGA, PGV, intensities, duration, and a check of the baseline.  Where a file holds several
     channels, the message lists them.
 
     Example: railquake probe motion RSN181.AT2 --picture motion.png
     """
-    from railquake.inputs.ground_motion import read_motion
+    from railquake.inputs.ground_motion import jma_intensity, read_motion, spectral_intensity
 
     chosen = int(channel) if channel is not None and channel.isdigit() else channel
     motion = read_motion(file, channel=chosen, units=units, dt=dt, allow_high_pga=allow_high_pga)
@@ -135,6 +135,8 @@ def probe_motion(
         "pga_m_s2": motion.pga,
         "pgv_m_s": motion.pgv,
         "arias_intensity_m_s": motion.arias_intensity,
+        "si_m_s": spectral_intensity(motion),
+        "jma_intensity": jma_intensity(motion),
         "significant_duration_s": motion.significant_duration(),
         "notes": list(motion.notes),
         "warnings": warnings,

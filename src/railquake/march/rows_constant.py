@@ -1,6 +1,7 @@
 """The rows of the constants ``Q[row, lane]``: everything of a run that stays fixed."""
 
 from railquake.march.declaration import Row, block, row
+from railquake.measures.housner import PERIODS
 
 __all__ = ["CONSTANT_GROUPS", "CONSTANT_ROWS"]
 
@@ -25,7 +26,15 @@ _STRUCTURE = (
     row("GROUND_LOAD", "kg", "what the ground's acceleration acts on", rows="STRUCTURE"),
     row("MASS", "kg or kg m2", "masses and inertias (Eq. 9)", rows="STRUCTURE"),
     row("K", "N/m, N or N m", "stiffness, hinge apart (Eq. 10)", rows="STRUCTURE_ENTRIES"),
-    row("C", "N s/m, N s or N m s", "damping", rows="STRUCTURE_ENTRIES"),
+    row("C", "N s/m, N s or N m s", "damping, hinge apart", rows="STRUCTURE_ENTRIES"),
+    block(
+        "HINGE_DAMPING",
+        "of the hinge itself (`pier.HingeDamping`)",
+        (
+            ("DAMPING_CONSTANT", "N m s", "whatever the hinge does"),
+            ("DAMPING_PER_TANGENT", "s", "times the hinge's tangent"),
+        ),
+    ),
     row("FLEX", "m/N, 1/N or 1/(N m)", "inverse of Newmark's matrix", rows="STRUCTURE_ENTRIES"),
     block(
         "OFFSET",
@@ -87,6 +96,12 @@ _MEASURES = (
         "FILTER_BY",
         "low-pass of the frame means (`low_pass.Coefficients`)",
         [(f"FILTER_{name}", "1", f"{name.lower()}") for name in ("B0", "B1", "B2", "A1", "A2")],
+    ),
+    row(
+        "SWING_BY",
+        "1",
+        "a frame's step of each oscillator on the track (`oscillator.Step`)",
+        rows=4 * len(PERIODS),
     ),
 )
 

@@ -2,6 +2,7 @@
 
 from railquake.march.declaration import Row, block, row
 from railquake.measures import MEASURES, StateRow
+from railquake.measures.housner import PERIODS
 from railquake.physics.derailment import EVENTS
 
 __all__ = ["FILTERED", "PATCHES", "STATE_GROUPS", "STATE_ROWS"]
@@ -14,6 +15,7 @@ _GROUND = (
     row("GROUND_SLOPE", "m/s2", "its change per step of the structure"),
     row("GROUND_Z", "m/s2", "ground acceleration, down", "ground_acceleration_down_m_s2"),
     row("GROUND_Z_SLOPE", "m/s2", "its change per step of the structure"),
+    row("GROUND_V", "m/s", "ground velocity, lateral, its least-squares line removed"),
 )
 
 # Eqs. 9, 10: of the pier u, theta_1 at the base and theta_2 at the top; of any structure the
@@ -58,6 +60,8 @@ _STRUCTURE = (
     row("UNBALANCED", "N or N m", "what a step's increments must balance", rows="STRUCTURE"),
     row("STRUCTURE_STEP", "m or rad", "increments of the last step", rows="STRUCTURE"),
     row("MOMENT", "N m", "moment of the hinge", "base_moment_n_m"),
+    row("TANGENT", "N m/rad", "tangent of the hinge"),
+    row("DAMPING_MOMENT", "N m", "of the hinge's damping, beside its own", "damping_moment_n_m"),
 )  # fmt: skip
 
 _TRACK = (
@@ -80,6 +84,10 @@ _TRACK = (
         ),
     ),
     row("TRACK_A", "m/s2 or rad/s2", "its acceleration during the structure's step", rows=3),
+    row("TRACK_V_BEGUN", "m/s", "its lateral velocity at the frame's begin, the ground's added"),
+    row("SWING_RE", "m/s", "oscillators on the track, one a period: real part", rows=len(PERIODS)),
+    row("SWING_IM", "m/s", "imaginary part", rows=len(PERIODS)),
+    row("PEAK_SWING", "m/s", "largest imaginary part", rows=len(PERIODS)),
     row("TRACK_SIN", "1", "sine of its roll"),
     row("TRACK_COS", "1", "cosine of its roll"),
 )

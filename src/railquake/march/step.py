@@ -84,7 +84,7 @@ def step(S: Array, Q: Array, geometry: Geometry, lanes: int, substeps: int) -> N
 def load_structure(S: Array, Q: Array, lanes: int) -> None:
     """The ground at the step's end; the last contact forces on the track where it is."""
     for lane in range(lanes):
-        move_ground(S, lane)
+        move_ground(S, Q, lane)
         load_track(S, Q, lane)
         place_track(S, Q, lane)
         orient_track(S, lane)
