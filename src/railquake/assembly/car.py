@@ -33,7 +33,6 @@ class HeldCar:
     Attributes
     ----------
     matrices : VehicleMatrices
-    kinematics : str
     layout : Layout
         Numbers of the rows of ``start`` and ``constants``.
     start : array, shape (state rows, 1)
@@ -42,14 +41,13 @@ class HeldCar:
     """
 
     matrices: VehicleMatrices
-    kinematics: str
     layout: Layout
     start: Array
     constants: Array
 
     def bind(self, entry: Callable[..., Any], target: Target) -> Callable[..., Any]:
         """An entry function of the march for this car."""
-        laws = chosen({"kinematics": self.kinematics})
+        laws = chosen({"kinematics": self.matrices.kinematics})
         laws.update(joining(self.matrices.joints.joined))
         return bind(entry, target, laws, self.layout).call
 
@@ -102,4 +100,4 @@ def held_car(vehicle: Vehicle, step: float, frame_steps: int) -> HeldCar:
     if not matrices.is_finite:
         sag = sag_of(matrices.stiffness, matrices.weight)
         start[layout.state_blocks["VEHICLE_X"], 0] = sag[kernel_order(len(sag))]
-    return HeldCar(matrices, vehicle.kinematics, layout, start, q[:, None])
+    return HeldCar(matrices, layout, start, q[:, None])

@@ -262,7 +262,7 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
         "restitution law": scenario.wheelrail.restitution_law,
         "hinge law": structure.hinge,
         "structure": structure.choice,
-        "kinematics": scenario.vehicle.kinematics,
+        "kinematics": vehicle.kinematics,
         "contact method": solver.contact,
     }
     geometry = build_geometry(scenario.wheelrail)

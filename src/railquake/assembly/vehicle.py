@@ -54,6 +54,11 @@ class VehicleMatrices:
         """Whether its bodies turn by any angle."""
         return bool(self.joints.joined.elements)
 
+    @property
+    def kinematics(self) -> str:
+        """What stands in the slot of that name; a body without joints has no use for them."""
+        return "finite" if self.is_finite else "linear"
+
     @cached_property
     def block(self) -> int:
         """Rows of the first block in the kernel's order; see `lateral_block`."""
