@@ -1,8 +1,8 @@
 """A run is a sequence of frames, for one scenario, for many abreast or a thread each on a GPU.
 
 A *frame* has a fixed number of time steps (1 ms by default).  Peaks and energies are taken at
-every step; events, low-pass filters, the test for derailment and the history once a frame.  Within
-a frame the ground's acceleration is linear.
+every step; events, low-pass filters, oscillators on the track, the test for derailment and the
+history once a frame.  Within a frame the ground's acceleration is linear.
 """
 
 from typing import Any
