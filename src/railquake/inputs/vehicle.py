@@ -113,6 +113,11 @@ class Dashpot(_Element):
         NonNegativeDamping, Field(description="Damping per side beyond the knee [N s/m]")
     ] = 0.0
 
+    def without_effect(self) -> set[str]:
+        """Fields that do not tell two dashpots apart: those of a knee where there is none."""
+        none = {"knee", "damping_beyond"} if self.knee is None else set()
+        return super().without_effect() | none
+
     @model_validator(mode="after")
     def _has_a_knee(self) -> Dashpot:
         if self.knee is None and self.damping_beyond > 0.0:
@@ -346,6 +351,16 @@ class Vehicle(FromPreset):
             ("stops", self.stops),
             ("anti_roll_bars", self.anti_roll_bars),
         )
+
+    def without_effect(self) -> set[str]:
+        """Fields that do not tell two vehicles apart.
+
+        Linear ones without stops and bars are what vehicles were before there was a choice: rows
+        of older studies stay theirs.
+        """
+        linear = {"kinematics"} if self.kinematics == "linear" else set()
+        none = {key for key in ("stops", "anti_roll_bars") if not getattr(self, key)}
+        return super().without_effect() | linear | none
 
     @property
     def mass(self) -> float:
