@@ -38,3 +38,15 @@ def test_a_mirrored_jolt_moves_the_car_the_mirrored_way(name):
     sign = np.concatenate([np.full(2 * bodies, -1.0), np.ones(bodies)])
     np.testing.assert_allclose(there, sign * here, atol=1e-12)
     assert abs(residual) < 1e-6 * 100.0  # a coarse step: 1e-4 s
+
+
+@pytest.mark.parametrize("name", ["manchester", "bart"])
+def test_the_energy_of_a_car_is_what_its_forces_take_from_it(name):
+    """The slope of the energy along any displacement is the force that holds it there."""
+    matrices = held_car(car(name), 1e-4, 10).matrices
+    x = np.array([0.2, 0.01, 0.05, 0.02, -0.01, 0.02, 0.0, 0.005, 0.01])  # onto its stops
+    slope = [
+        (matrices.elastic_energy(x + move) - matrices.elastic_energy(x - move)) / 2e-6
+        for move in 1e-6 * np.eye(9)
+    ]
+    assert matrices.held_by(x) == pytest.approx(slope, rel=1e-5, abs=1.0)
