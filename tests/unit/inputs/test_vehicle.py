@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
+from railquake.inputs.identity import fingerprint
 from railquake.inputs.presets import preset_names
 from railquake.inputs.vehicle import Body, Dashpot, Spring, Vehicle
 
@@ -231,3 +232,15 @@ def test_the_papers_cars_are_linear_and_others_are_not():
 def test_a_published_car_says_where_it_is_from_and_how_far_to_trust_it(name):
     vehicle = Vehicle.from_preset(name)
     assert len(vehicle.source) > 40 and "Read in" in vehicle.note
+
+
+def test_a_linear_car_without_stops_is_told_apart_as_before_there_was_a_choice():
+    """Rows of older studies stay theirs; what is chosen is told apart."""
+    before = fingerprint(Vehicle.from_preset("bart"))
+    for new in ("kinematics", "stops", "anti_roll_bars", "knee", "damping_beyond"):
+        assert new not in before
+    knee = {"kinematics": "finite", "dashpots": {"primary-lateral": {"knee": "0.1 m/s"}}}
+    for changes in ({"kinematics": "finite"}, knee):
+        after = fingerprint(Vehicle.from_preset("bart", changes))
+        assert after != before and '"kinematics":"finite"' in after
+    assert '"knee":0.1' in fingerprint(Vehicle.from_preset("bart", knee))
