@@ -14,6 +14,8 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.special import ellipe, ellipk
 
+from independent_car import FiniteCar, LinearCar
+
 G = 9.80665
 CATCH_UP = 1e5  # 1/s, the rate at which the hinge's largest rotation follows a new one
 STEEP = 4.0  # slope of the rail's head from which its face goes on as a straight line
@@ -43,7 +45,10 @@ def vehicle_matrices(vehicle):
 
 
 def column_matrices(pier):
-    """M, C, K of a column by its ends' rotations from the chord; C on the first two modes."""
+    """M, C, K of a column by its ends' rotations from the chord; C on the first two modes.
+
+    The hinge's damping is in C where it is that of its initial stiffness.
+    """
     length, ei = pier.length, pier.youngs_modulus * pier.second_moment_of_area
     from_chord = np.array([[1.0 / length, 1.0, 0.0], [1.0 / length, 0.0, 1.0]])
     stiffness = from_chord.T @ (ei / length * np.array([[4.0, 2.0], [2.0, 4.0]])) @ from_chord
@@ -51,7 +56,8 @@ def column_matrices(pier):
     whole = stiffness + np.diag([0.0, pier.bouc_wen.k0, 0.0])
     w = np.sqrt(np.sort(np.linalg.eigvals(whole / mass[:, None]).real)[:2])
     a, b = np.linalg.solve(np.column_stack([0.5 / w, 0.5 * w]), 2 * [pier.damping_ratio])
-    return mass, a * np.diag(mass) + b * whole, stiffness
+    damped = {"column": stiffness, "initial": whole}[pier.damping_of]
+    return mass, a * np.diag(mass) + b * damped, stiffness
 
 
 def hinge_rates(h, x, v, z, eps, largest):
@@ -269,8 +275,13 @@ class Whole:
     def __init__(self, scenario, kalker):
         self.contact = Contact(scenario, kalker)
         self.pier = scenario.support
-        self.mass, self.c, self.k = vehicle_matrices(scenario.vehicle)
-        self.n = len(self.mass)
+        finite = scenario.vehicle.kinematics == "finite"
+        self.car = (
+            FiniteCar(scenario.vehicle)
+            if finite
+            else LinearCar(*vehicle_matrices(scenario.vehicle))
+        )
+        self.mass, self.n = self.car.mass, self.car.n
         bodies = sorted(scenario.vehicle.bodies, key=lambda b: b.name == scenario.vehicle.wheelset)
         self.heights = np.array([b.height for b in bodies])
         self.pier_mass, self.pier_c, self.pier_k = column_matrices(self.pier)
@@ -318,7 +329,7 @@ class Whole:
         force = self.to_track.T @ on_track - self.pier_c @ v - self.pier_k @ x
         force -= (self.pier.mass * a, moment, 0.0)
         push = self.weight * (1.0 + np.interp(t, *self.lift) / G) - self.mass * a * self.sideways
-        push -= self.c @ speed + self.k @ vehicle
+        push -= self.car.at_work(vehicle, speed)[0]
         push[-3:] += on_wheelset
         return np.concatenate(
             [v, force / self.pier_mass, hinge_rate, speed, push / self.mass, [touch.turning]]
@@ -354,7 +365,7 @@ class Whole:
             moment, _ = self.hinge(x[1], 0.0, *hinge)
             on_pier = self.coupled * self.to_track.T @ touch.on_track - self.pier_k @ x
             on_pier[1] -= moment
-            push = self.weight - self.k @ vehicle
+            push = self.weight - self.car.at_work(vehicle, 0.0 * vehicle)[0]
             push[-3:] += touch.on_wheelset
             balance = touch.turning * self.contact.axle_inertia / self.level[1]
             return np.concatenate([on_pier, push, [balance]]) / total
@@ -363,7 +374,8 @@ class Whole:
         x = self.coupled * np.linalg.solve(whole, self.to_track.T @ [0.0, total, 0.0])
         y, z, roll = self.to_track @ x
         vehicle = np.zeros(self.n)
-        vehicle[:-3] = np.linalg.solve(self.k[:-3, :-3], self.weight[:-3])
+        if isinstance(self.car, LinearCar):  # the other one is drawn as it stands
+            vehicle[:-3] = self.car.sag(self.weight)
         vehicle += np.tile([0.0, z + 8e-5, roll], self.n // 3)
         vehicle[0::3] += y + roll * self.heights
         guess = 1e3 * np.concatenate([x, vehicle, [0.0]])

@@ -120,6 +120,7 @@ def car(*names, lopsided=False):
         "dashpots": dashpots,
         "axles": 4,
         "speed": "80 km/h",
+        "kinematics": "linear",
     }
 
 

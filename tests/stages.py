@@ -1,7 +1,7 @@
 """Stages of the march by themselves, with the laws of a system in their slots."""
 
 from railquake.march.compiler import PYTHON, bind
-from railquake.march.slots import chosen, solving
+from railquake.march.slots import chosen, joining, solving
 
 
 def stage(system, function, engine="alone"):
@@ -20,5 +20,6 @@ def stage(system, function, engine="alone"):
     together = engine != "alone"
     linearised = together or system.scenario.solver.hinge_solve == "linearised"
     laws = chosen({**system.choices, "engine": engine})
+    laws.update(joining(system.vehicle.joints.joined))
     laws.update(solving(system.structure.hinge, linearised, abreast=together))
     return bind(laws.get(function, function), PYTHON, laws, system.layout).call

@@ -32,11 +32,9 @@ BEFORE = {
 # ... and what it only tells of.
 TOLD = {
     "inputs/vehicle.py": [
-        ("    wheelset: Annotated[", "    roll_bars: Annotated[tuple[RollBar, ...], ByName(), "
-         'Field(description="Bars")] = ()\n    wheelset: Annotated['),
-        ("    PositiveStiffness,\n", "    PositiveRotationalStiffness,\n    PositiveStiffness,\n"),
+        ("    wheelset: Annotated[", "    roll_dashpots: Annotated[tuple[RollDashpot, ...], "
+         'ByName(), Field(description="Roll dashpots")] = ()\n    wheelset: Annotated['),
     ],
-    "assembly/vehicle.py": [("import element_matrix,", "import roll_row, element_matrix,")],
     "inputs/support.py": [
         ("Pier | AtGrade | PrescribedTrack,", "Pier | AtGrade | PrescribedTrack | Isolated,"),
         ("    PositivePressure,\n", "    PositivePressure,\n    PositiveStiffness,\n"),
@@ -56,7 +54,7 @@ RUNS = {
     "element": {
         "vehicle": {
             "preset": "bart",
-            "roll_bars": {"bar": {"bodies": ["car", "bogie"], "stiffness": "2 MN m/rad"}},
+            "roll_dashpots": {"own": {"bodies": ["car", "bogie"], "damping": 2e5}},
         }
     },
     "support": {"support": {"kind": "isolated", "mass": "300 t", "stiffness": "12 MN/m"}},
@@ -82,7 +80,7 @@ for name, changes in json.loads(sys.argv[1]).items():
         **{key: value for key, value in rq.assess(response).items() if key != "versions"},
         "choices": system.choices,
         "channels": list(history),
-        "roll_stiffness": system.vehicle.stiffness[2, 2],
+        "roll_damping": system.vehicle.damping[2, 2],
     }
 print(json.dumps(found))
 """
@@ -154,9 +152,9 @@ def test_the_hinge_is_cut_off_and_shows_its_state(found):
     assert "hinge_plastic_rotation_rad" in found["hinge"]["channels"]
 
 
-def test_the_bar_stiffens_the_roll(found):
-    more = found["element"]["roll_stiffness"] - found["plain"]["roll_stiffness"]
-    assert more == pytest.approx(2e6, rel=1e-9)
+def test_the_dashpot_damps_the_roll(found):
+    more = found["element"]["roll_damping"] - found["plain"]["roll_damping"]
+    assert more == pytest.approx(2e5, rel=1e-9)
 
 
 def test_the_deck_moves_on_its_bearings(found):

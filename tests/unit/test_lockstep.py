@@ -20,7 +20,7 @@ TIMINGS = ("wall_s", "steps_per_s", "versions")
 
 
 def mixed():
-    """Eleven scenarios of all kinds: more than a batch has lanes."""
+    """Twelve scenarios of all kinds: more than a batch has lanes."""
     strong = {**SHORT, "pga": "1.5 g", "duration": "3 s", "dt": "0.004 s"}
     return [
         rq.scenario(synthetic=SHORT),
@@ -34,6 +34,7 @@ def mixed():
         rq.scenario(synthetic=SHORT, support={"preset": "bart-berkeley", "length": "8 m"}),
         rq.scenario(synthetic=SHORT, scale=2.0),
         rq.scenario(synthetic=SHORT, scale=-1.0, hinge="elastic"),
+        rq.scenario(synthetic=strong, vehicle="bart-under-gravity"),
     ]
 
 
@@ -47,14 +48,14 @@ def rows():
 
 
 def test_every_scenario_has_one_row(rows):
-    assert sorted(rows) == list(range(11))
+    assert sorted(rows) == list(range(12))
     assert {row["status"] for row in rows.values()} <= {"safe", "onset", "derailed"}
 
 
 def test_a_row_does_not_depend_on_its_neighbours(rows):
     backwards = dict(rq.simulate_many(mixed()[::-1], threads=1))
     for index, row in rows.items():
-        assert untimed(backwards[10 - index]) == untimed(row)
+        assert untimed(backwards[11 - index]) == untimed(row)
     alone = dict(rq.simulate_many(mixed()[1:2], threads=1))
     assert untimed(alone[0]) == untimed(rows[1])
 

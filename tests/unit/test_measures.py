@@ -11,7 +11,7 @@ from scipy.signal import lfilter, lsim
 import railquake as rq
 from railquake import measures
 from railquake.cli import single
-from railquake.inputs.ground_motion import GroundMotion, response_spectrum
+from railquake.inputs.ground_motion import GroundMotion, response_spectrum, spectral_intensity
 from railquake.measures import Intensity, Kind, Measure, StateRow, all_keys, named
 from railquake.report import uplift
 from railquake.report.context import Context
@@ -159,13 +159,24 @@ def test_recursion_by_doubling_is_the_one_sample_by_sample():
         assert found == pytest.approx(lfilter([1.0], [1.0, -growth], loads), rel=1e-12)
 
 
-def test_runs_that_share_a_motion_share_its_spectral_acceleration():
+@pytest.mark.parametrize(
+    ("remembered", "key"),
+    [(spectral._ordinate, "sa_t1_m_s2"), (spectral._intensity, "si_ground_m_s")],
+)
+def test_runs_that_share_a_motion_share_its_spectrum(remembered, key):
     many = dict(rq.simulate_many(cases()[:2], threads=1))
-    before = spectral._ordinate.cache_info()
+    before = remembered.cache_info()
     again = dict(rq.simulate_many(cases()[:2], threads=1))
-    after = spectral._ordinate.cache_info()
+    after = remembered.cache_info()
     assert after.hits == before.hits + 2 and after.misses == before.misses
-    assert many[0]["sa_t1_m_s2"] == again[1]["sa_t1_m_s2"]
+    assert many[0][key] == again[1][key]
+
+
+def test_spectral_intensity_of_a_row_is_that_of_the_motion():
+    motion = rq.scenario(synthetic=SHORT).ground_motion()
+    assert spectral.spectral_intensity(motion) == pytest.approx(
+        spectral_intensity(motion), rel=1e-12
+    )
 
 
 # --- a measure that comes later ----------------------------------------------------------------

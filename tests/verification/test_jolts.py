@@ -24,6 +24,13 @@ def test_the_jolts_reach_every_regime():
     assert max(STORED["to the left, elastic"]["wheel_load_left_n"]) > 1e6
 
 
+def test_the_turned_car_is_borne_by_its_stops():
+    """Beyond the lateral table's end and the vertical gap of 20 mm."""
+    system = pushed("turned, under gravity", DT)
+    end = rq.simulate(system, target=PYTHON).end[system.layout.state_blocks["STOP_TRAVEL"], 0]
+    assert (end > np.array([0.065, 0.065, 0.02, 0.02])).all()
+
+
 def test_uplift_and_flange_contact_are_noticed(jolted):
     assert {event.name for event in jolted[1].events} == {"uplift", "flange contact"}
 

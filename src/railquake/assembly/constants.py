@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from railquake.assembly.geometry import ROLL_AXIS, SHIFT_AXIS
+from railquake.assembly.joints import fill_joints
 from railquake.errors import InputError
 from railquake.inputs.profile import flange_tip
 from railquake.march.order import kernel_order
 from railquake.march.packed import unpacked, upper_triangle
+from railquake.measures import housner
 from railquake.physics import newmark
 from railquake.physics.contact_table import axis_cells
 from railquake.physics.derailment import ROLL_LIMIT, SHIFT_LIMIT
 from railquake.physics.impact import RESTITUTION_LAWS
 from railquake.physics.low_pass import low_pass_coefficients
+from railquake.physics.oscillator import oscillator_step
 from railquake.physics.vehicle import GRAVITY
 
 if TYPE_CHECKING:
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
     from railquake.inputs.wheelrail import WheelRail
     from railquake.march.rows import Layout
 
-__all__ = ["constants_of", "fill_structure", "fill_substeps", "frame_steps"]
+__all__ = ["constants_of", "fill_structure", "fill_substeps", "fill_vehicle", "frame_steps"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -58,7 +61,13 @@ def constants_of(
     q[layout.constant_blocks["FILTER_BY"]] = low_pass_coefficients(
         solver.lateral_force_filter, solver.step * frame_steps(solver)
     )
-    _fill_vehicle(q, vehicle, layout)
+    q[layout.constant_blocks["SWING_BY"]] = np.ravel(
+        [
+            oscillator_step(period, housner.DAMPING, solver.step * frame_steps(solver))
+            for period in housner.PERIODS
+        ]
+    )
+    fill_vehicle(q, vehicle, layout)
     _fill_wheelrail(q, scenario.wheelrail, scenario.vehicle.speed, layout)
     fill_structure(q, structure, layout)
     fill_substeps(q, 1, layout)
@@ -70,7 +79,8 @@ def static_wheel_load(vehicle: VehicleMatrices) -> float:
     return 0.5 * float(vehicle.mass[1::3].sum()) * GRAVITY
 
 
-def _fill_vehicle(q: Array, vehicle: VehicleMatrices, layout: Layout) -> None:
+def fill_vehicle(q: Array, vehicle: VehicleMatrices, layout: Layout) -> None:
+    """Bodies and what joins them."""
     constant, blocks = layout.constant, layout.constant_blocks
     order = kernel_order(len(vehicle.mass))
     upper = upper_triangle(len(order))
@@ -79,6 +89,8 @@ def _fill_vehicle(q: Array, vehicle: VehicleMatrices, layout: Layout) -> None:
     q[blocks["INVERSE_MASS"]] = 1.0 / vehicle.mass[order]
     q[blocks["STIFFNESS"]] = vehicle.stiffness[np.ix_(order, order)][upper]
     q[blocks["DAMPING"]] = vehicle.damping[np.ix_(order, order)][upper]
+    if vehicle.is_finite:
+        fill_joints(q, vehicle.joints, layout)
 
 
 def _fill_wheelrail(q: Array, wheelrail: WheelRail, speed: float, layout: Layout) -> None:
@@ -117,6 +129,7 @@ def fill_structure(q: Array, structure: Structure, layout: Layout) -> None:
     q[blocks["K"]] = structure.stiffness[upper]
     q[blocks["C"]] = structure.damping[upper]
     q[blocks["OFFSET"]] = structure.offset
+    q[blocks["HINGE_DAMPING"]] = structure.hinge_damping
     q[constant.REACTION] = structure.reaction
     q[blocks["HINGE"]] = structure.parameters
 

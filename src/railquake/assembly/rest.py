@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import brentq
 
+from railquake.assembly.vehicle import sag_of
 from railquake.errors import InputError
 from railquake.physics.hinge import HINGE_LAWS, HingeLaw
-from railquake.physics.vehicle import GRAVITY
 
 if TYPE_CHECKING:
     from railquake.assembly.stability import ContactForces
@@ -31,14 +31,15 @@ class LoadedHinge:
     ----------
     rotation : float
         rad.
-    moment : float
-        N m, as the law gives it there.
+    moment, tangent : float
+        N m and N m/rad, as the law gives them there.
     state : named tuple
         Of the law.
     """
 
     rotation: float
     moment: float
+    tangent: float
     state: Any
 
 
@@ -56,9 +57,10 @@ def loaded_hinge(law: HingeLaw, parameters: Any, moment: float) -> LoadedHinge:
 
     def turned(at: LoadedHinge, by: float) -> LoadedHinge:
         answer = law.advance(at.rotation, at.state, parameters, by, 0.0)
-        return LoadedHinge(at.rotation + answer.step, answer.moment, law.standing(answer.state))
+        turned_to = at.rotation + answer.step
+        return LoadedHinge(turned_to, answer.moment, answer.tangent, law.standing(answer.state))
 
-    at = LoadedHinge(0.0, 0.0, law.virgin)
+    at = LoadedHinge(0.0, 0.0, parameters.k0, law.virgin)
     if moment != 0.0:
         increment = moment / parameters.k0 / 100.0
         for _ in range(20_000):
@@ -73,7 +75,8 @@ def loaded_hinge(law: HingeLaw, parameters: Any, moment: float) -> LoadedHinge:
             )
         last = brentq(lambda by: turned(at, by).moment - moment, 0.0, increment, xtol=1e-18)
         at = turned(at, float(last))
-    return LoadedHinge(at.rotation, turned(at, 0.0).moment, at.state)
+    held = turned(at, 0.0)
+    return LoadedHinge(at.rotation, held.moment, held.tangent, at.state)
 
 
 @dataclass(frozen=True)
@@ -129,14 +132,9 @@ def find_rest(of: Equilibrium) -> Rest:
     law = HINGE_LAWS[structure.hinge]
     count, _, hinge_at, _ = structure.degrees
     n = len(of.vehicle.mass)
-    weight = of.vehicle.mass.copy()
-    weight[0::3] = 0.0
-    weight[2::3] = 0.0
-    weight *= GRAVITY
-    # the suspension's own compression under the bodies' weight, wheelset held
-    sag = np.zeros(n)
-    if n > 3:
-        sag[:-3] = np.linalg.solve(of.vehicle.stiffness[:-3, :-3], weight[:-3])
+    weight = of.vehicle.weight
+    # a car with finite rotations is drawn as it stands
+    sag = np.zeros(n) if of.vehicle.is_finite else sag_of(of.vehicle.stiffness, weight)
     secant = structure.parameters.k0
 
     # first guess: the structure under the weight on its track, the car carried along
@@ -201,7 +199,7 @@ class _Unknowns:
         out = np.empty(len(unknown))
         out[:count] = structure.stiffness @ place - structure.reaction * on_node
         out[hinge_at] += self.secant * place[hinge_at]
-        out[count:] = self.of.vehicle.stiffness @ vehicle - self.weight
+        out[count:] = self.of.vehicle.held_by(vehicle) - self.weight
         out[-3:] -= on_wheelset
         return out / self.weight.sum()
 

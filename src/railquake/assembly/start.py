@@ -158,6 +158,7 @@ def start_state(
     S[blocks["STRUCTURE_X"], 0] = at.structure
     S[blocks["HINGE"], 0] = at.hinge.state
     S[state.MOMENT] = at.hinge.moment
+    S[state.TANGENT] = at.hinge.tangent
     order = kernel_order(layout.size.DOFS)
     S[blocks["VEHICLE_X"], 0] = at.vehicle[order]
     S[blocks["VEHICLE_V"], 0] = np.where(order % 3 == 0, at.drift, 0.0)

@@ -28,13 +28,14 @@ from railquake.assembly.start import (
     start_state,
 )
 from railquake.assembly.supports import Structure, structure_of
-from railquake.assembly.vehicle import VehicleMatrices, vehicle_matrices
+from railquake.assembly.vehicle import VehicleMatrices, refuse_unstable, vehicle_matrices
 from railquake.errors import InputError
+from railquake.inputs.ground_motion.motion import cumulative_trapezoid, without_line
 from railquake.inputs.identity import files_of
 from railquake.march import frames
 from railquake.march.compiler import CUDA, SCALAR, Kernel, Target, bind
 from railquake.march.rows import Layout, layout_of
-from railquake.march.slots import chosen, solving
+from railquake.march.slots import chosen, joining, solving
 from railquake.memory import Bounded
 from railquake.physics.hinge import HINGE_LAWS
 from railquake.physics.profiles import Geometry
@@ -71,8 +72,8 @@ class System:
     constants : array, shape (constant rows, 1)
     geometry : Geometry
         Profiles and contact table.
-    drive : array, shape (frames + 1, 2 or 8)
-        Ground acceleration (and prescribed track) at the frames' ends.
+    drive : array, shape (frames + 1, 3 or 9)
+        Ground acceleration and velocity (and prescribed track) at the frames' ends.
     choices : dict
         What stands in the slots (`slots.SLOTS`): name of the choice by name of the slot.
     critical_dt : float
@@ -146,6 +147,7 @@ class System:
         how = self.scenario.solver.hinge_solve
         linearised = not alone if how is None else how == "linearised"
         laws = chosen({**self.choices, "engine": engine})
+        laws.update(joining(self.vehicle.joints.joined))
         laws.update(solving(self.structure.hinge, linearised, abreast=not alone))
         return bind(
             entries[engine], target, laws, _layout(self.structure, self.vehicle, target.lanes)
@@ -238,13 +240,21 @@ def _stamps(scenario: Scenario) -> tuple[tuple[str, int, int], ...]:
 
 def _layout(structure: Structure, vehicle: VehicleMatrices, lanes: int = 1) -> Layout:
     law = HINGE_LAWS[structure.hinge]
-    return layout_of(law, len(vehicle.bodies), vehicle.block, structure.degrees, lanes)
+    return layout_of(
+        law,
+        len(vehicle.bodies),
+        vehicle.block,
+        structure.degrees,
+        lanes,
+        vehicle.joints.joined,
+    )
 
 
 def _assemble_at_rest(scenario: Scenario) -> _AtRest:
     """Everything but the ground's motion."""
     solver = scenario.solver
     vehicle = vehicle_matrices(scenario.vehicle)
+    refuse_unstable(vehicle)
     structure = structure_of(scenario.support, solver, scenario.vehicle.mass)
     layout = _layout(structure, vehicle)
     choices = {
@@ -253,6 +263,7 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
         "restitution law": scenario.wheelrail.restitution_law,
         "hinge law": structure.hinge,
         "structure": structure.choice,
+        "kinematics": vehicle.kinematics,
         "contact method": solver.contact,
     }
     geometry = build_geometry(scenario.wheelrail)
@@ -281,8 +292,12 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
     start = start_state(blank, constants, geometry, at, track, stages, layout, vehicle)
 
     contact = stability.linear_contact(at.vehicle[-3:], at.drift, forces, track)
-    held = stability.with_contact(contact, vehicle.stiffness, vehicle.damping)
-    critical = stability.critical_time_step(vehicle.mass, *held, solver.phi, solver.psi)
+    critical = min(
+        stability.critical_time_step(
+            vehicle.mass, *stability.with_contact(contact, *matrices), solver.phi, solver.psi
+        )
+        for matrices in vehicle.states
+    )
     if solver.step > critical:
         raise InputError(
             f"solver.dt: {solver.step:g} s is above the critical time step of {critical:.3g} s "
@@ -306,7 +321,10 @@ def _rounded_down(value: float) -> float:
 
 
 def _drive(scenario: Scenario, ground: GroundMotion, frame: float, structure: Structure) -> Array:
-    """Ground acceleration at the frames' ends, by linear interpolation of the records."""
+    """The ground at the frames' ends, by linear interpolation of the records.
+
+    Its lateral velocity is corrected as in `GroundMotion.pgv`.
+    """
     frames = max(1, math.ceil(ground.duration / frame - 1e-9))
     times: Array = frame * np.arange(frames + 1, dtype=np.float64)
     columns: list[Array] = [np.interp(times, ground.time, ground.acceleration)]
@@ -316,6 +334,7 @@ def _drive(scenario: Scenario, ground: GroundMotion, frame: float, structure: St
     else:
         # recorded positive up, z is positive down
         columns.append(-np.interp(times, vertical.time, vertical.acceleration, right=0.0))
+    columns.append(without_line(cumulative_trapezoid(columns[0], frame)))
     if structure.prescribed is not None:
         columns += structure.prescribed(times)
     return np.ascontiguousarray(np.column_stack(columns))

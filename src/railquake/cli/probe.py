@@ -1,4 +1,4 @@
-"""One component of the model by itself: hinge, motion, contact, creep."""
+"""One component of the model by itself: hinge, car, motion, contact, creep."""
 
 from __future__ import annotations
 
@@ -110,12 +110,12 @@ def probe_motion(
 ) -> None:
     """Read a record and measure it.
 
-    PGA, PGV, Arias intensity, duration, and a check of the baseline.  Where a file holds several
+    PGA, PGV, intensities, duration, and a check of the baseline.  Where a file holds several
     channels, the message lists them.
 
     Example: railquake probe motion RSN181.AT2 --picture motion.png
     """
-    from railquake.inputs.ground_motion import read_motion
+    from railquake.inputs.ground_motion import jma_intensity, read_motion, spectral_intensity
 
     chosen = int(channel) if channel is not None and channel.isdigit() else channel
     motion = read_motion(file, channel=chosen, units=units, dt=dt, allow_high_pga=allow_high_pga)
@@ -135,6 +135,8 @@ def probe_motion(
         "pga_m_s2": motion.pga,
         "pgv_m_s": motion.pgv,
         "arias_intensity_m_s": motion.arias_intensity,
+        "si_m_s": spectral_intensity(motion),
+        "jma_intensity": jma_intensity(motion),
         "significant_duration_s": motion.significant_duration(),
         "notes": list(motion.notes),
         "warnings": warnings,
@@ -143,6 +145,93 @@ def probe_motion(
         print_json(facts)
         return
     print_facts(facts)
+
+
+@probe_app.command("car")
+def probe_car(
+    vehicle: Annotated[str, typer.Option(help="Vehicle preset or file.")] = "bart-under-gravity",
+    lean: Annotated[
+        float | None, typer.Option(help="Steady lateral inertia force per mass, m/s2.")
+    ] = None,
+    motion: Annotated[
+        Path | None, typer.Option(help="Record of the ground's lateral acceleration.")
+    ] = None,
+    scale: Annotated[float, typer.Option(help="Factor of the record.")] = 1.0,
+    allow_high_pga: Annotated[bool, typer.Option(help="Take a peak above 3 g as it is.")] = False,
+    out: Annotated[Path | None, typer.Option(help="CSV of the history to write.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Try a car by itself, its wheelset held.
+
+    With --lean: where its bodies stand under a steady force, and its flexibility coefficient, roll
+    over a/g.  With --motion: the history of its bodies, columns t_s, then y, z (m) and roll (rad)
+    of each body from where it stands at rest, y to the right, z down, roll right side down.
+
+    Example: railquake probe car --vehicle manchester --lean 2.0
+    """
+    from railquake.inputs.vehicle import Vehicle
+
+    if (lean is None) == (motion is None):
+        raise InputError("give either --lean, m/s2, or --motion, a record of the ground")
+    car = Vehicle.from_preset(vehicle)
+    if lean is not None:
+        _lean_car(car, lean, as_json)
+        return
+    assert motion is not None
+    _shake_car(car, motion, scale, allow_high_pga, out, as_json)
+
+
+def _lean_car(car: Any, acceleration: float, as_json: bool) -> None:
+    """Print where a car stands under a steady force."""
+    from math import isfinite
+
+    from railquake.probe import lean
+
+    if not isfinite(acceleration):
+        raise InputError(f"--lean: must be a finite number of m/s2, found {acceleration:g}")
+    found = lean(car, acceleration)
+    facts: dict[str, Any] = {"a_m_s2": acceleration}
+    facts.update(zip(_columns(found.bodies), found.displacements.ravel().tolist(), strict=True))
+    coefficient = found.flexibility_coefficient
+    facts["flexibility_coefficient"] = coefficient if isfinite(coefficient) else None
+    if as_json:
+        print_json(facts)
+        return
+    print_facts(facts)
+
+
+def _shake_car(
+    car: Any, record: Path, scale: float, high: bool, out: Path | None, as_json: bool
+) -> None:
+    """Write how a car answers a motion of the ground."""
+    import numpy as np
+
+    from railquake.inputs.ground_motion import read_motion
+    from railquake.probe import shake_held
+
+    ground = read_motion(record, allow_high_pga=high)
+    lateral = scale * ground.acceleration
+    found = shake_held(car, ground.time, lateral, np.zeros(len(lateral)))
+    moved = found.displacements.reshape(len(found.time), -1)
+    columns = _columns(found.bodies)
+    if out is not None or not as_json:
+        lines = [",".join(("t_s", *columns))]
+        lines += [
+            f"{t:.3f}," + ",".join(f"{value:.9g}" for value in row)
+            for t, row in zip(found.time, moved, strict=True)
+        ]
+        if out is None:
+            typer.echo("\n".join(lines))
+        else:
+            write_text(out, "\n".join(lines) + "\n")
+    if as_json:
+        peaks = dict(zip(columns, np.abs(moved).max(axis=0).tolist(), strict=True))
+        print_json({"peaks": peaks, "energy_residual": found.energy_residual})
+
+
+def _columns(bodies: tuple[str, ...]) -> list[str]:
+    """Columns of the displacements of bodies."""
+    return [f"{body}_{what}" for body in bodies for what in ("y_m", "z_m", "roll_rad")]
 
 
 @probe_app.command("contact")

@@ -191,7 +191,8 @@ def modes(
 ) -> None:
     """Natural modes of a vehicle with its wheelset fixed.
 
-    Frequencies, names and shapes; for bart they are the paper's Table 1 and Figure 6.
+    Frequencies, names and shapes; for bart they are the paper's Table 1 and Figure 6.  Of a car
+    with finite rotations with gravity's moments, and without them beside.
 
     Example: railquake modes bart --out modes.png
     """
@@ -203,13 +204,22 @@ def modes(
     car = Vehicle.from_preset(vehicle)
     matrices = vehicle_matrices(car)
     frequencies, _ = fixed_wheelset_modes(matrices.mass, matrices.stiffness)
+    without, _ = fixed_wheelset_modes(matrices.mass, matrices.without_gravity)
     labels = mode_labels(car, matrices)
     if out is not None:
         from railquake.plots import write_modes_picture
 
         write_file(out, lambda path: write_modes_picture(car, labels, path))
     if as_json:
-        print_json({"frequencies_hz": frequencies.tolist(), "labels": labels})
+        print_json(
+            {
+                "frequencies_hz": frequencies.tolist(),
+                "labels": labels,
+                "without_gravity_hz": without.tolist(),
+            }
+        )
         return
     for k, (frequency, label) in enumerate(zip(frequencies, labels, strict=True), 1):
-        typer.echo(f"{k:2}  {frequency:8.4f} Hz  {label}")
+        light = f"  ({without[k - 1]:.4f} Hz without gravity)" if matrices.is_finite else ""
+        falls = "  unstable: it falls over by its own weight" if frequency < 0.0 else ""
+        typer.echo(f"{k:2}  {frequency:8.4f} Hz  {label}{light}{falls}")

@@ -72,7 +72,8 @@ def _prepare(ops: Any, pier: Pier, acceleration: Array, dt: float, gravity: floa
     ops.mass(2, 0.0, 0.0, pier.base_rotational_inertia)
     ops.mass(TOP, pier.mass, 0.0, pier.rotational_inertia)
     hinge_material(ops, 1, pier.bouc_wen, elastic=pier.hinge == "elastic")
-    ops.element("zeroLength", HINGE, 1, 2, "-mat", 1, "-dir", 6, "-doRayleigh", 1)
+    of_hinge = 0 if pier.damping_of == "column" else 1
+    ops.element("zeroLength", HINGE, 1, 2, "-mat", 1, "-dir", 6, "-doRayleigh", of_hinge)
     ops.geomTransf("Linear", 1)
     # the area is no part of the model: the top is held vertically
     ops.element(
@@ -85,7 +86,8 @@ def _prepare(ops: Any, pier: Pier, acceleration: Array, dt: float, gravity: floa
         pier.youngs_modulus, pier.second_moment_of_area, pier.length, pier.bouc_wen.k0
     )
     a, b = rayleigh_coefficients(mass, initial, pier.damping_ratio)
-    ops.rayleigh(a, 0.0, b, 0.0)
+    # of the initial stiffness, or of that at the last step's end; the column has but one
+    ops.rayleigh(a, 0.0, *((0.0, b) if pier.damping_of == "tangent" else (b, 0.0)))
     ops.constraints("Plain")
     ops.numberer("Plain")
     ops.system("ProfileSPD")

@@ -86,7 +86,7 @@ def _reduce(data: dict[str, Any], section: InputModel) -> None:
         elif models := _models(value):
             tables = data[name] if isinstance(value, tuple) else [data[name]]
             for table, model in zip(tables, models, strict=True):
-                if holds(type(model), File, Label, Samples):
+                if model.without_effect() or holds(type(model), File, Label, Samples):
                     _reduce(table, model)
 
 

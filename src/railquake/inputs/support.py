@@ -89,6 +89,13 @@ class Pier(SupportKind, FromPreset):
     damping_ratio: Annotated[
         _DampingRatio, Field(lt=1.0, description="Rayleigh, first two initial modes [1]")
     ] = 0.02
+    damping_of: Annotated[
+        Literal["column", "initial", "tangent"],
+        Field(
+            description="Whose stiffness the part of the damping that goes with stiffness takes: "
+            "the column's alone, the hinge's initial one as well, or its tangent as well"
+        ),
+    ] = "column"
     p_delta: Annotated[Flag, Field(description="Whether gravity acts on the displaced column")] = (
         False
     )
@@ -120,6 +127,14 @@ class Pier(SupportKind, FromPreset):
             if key in data:
                 data[key] = nested(model, key, data[key])
         return data
+
+    def without_effect(self) -> set[str]:
+        """Fields that do not tell two piers apart.
+
+        "initial" is what piers were before there was a choice: rows of older studies stay theirs.
+        """
+        usual = {"damping_of"} if self.damping_of == "initial" else set()
+        return super().without_effect() | usual
 
     @property
     def hinge_parameters(self) -> InputModel:

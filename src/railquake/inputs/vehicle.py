@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -20,15 +21,21 @@ from railquake.inputs.model import (
 from railquake.inputs.units import (
     Length,
     NonNegativeDamping,
+    NonNegativeForce,
+    NonNegativeLength,
     NonNegativeSpeed,
     PositiveLength,
     PositiveMass,
+    PositiveNumber,
     PositiveRollInertia,
+    PositiveRotationalStiffness,
+    PositiveSpeed,
     PositiveStiffness,
 )
 from railquake.messages import did_you_mean
 
 Direction = Literal["lateral", "vertical"]
+Kinematics = Literal["finite", "linear"]
 
 
 class Body(InputModel):
@@ -45,9 +52,9 @@ class Body(InputModel):
 
 
 class _Element(InputModel):
-    """What springs and dashpots have in common: two points, and the direction between them."""
+    """What springs, dashpots and stops have in common: two points, a direction between them."""
 
-    name: Annotated[Name, Field(description="Unique among the vehicle's springs or dashpots")]
+    name: Annotated[Name, Field(description="Unique among the vehicle's elements of its kind")]
     bodies: Annotated[tuple[Name, Name], Field(description="The two bodies, by name")]
     direction: Annotated[Direction, Field(description="The direction it acts in")]
     lateral: Annotated[
@@ -94,13 +101,146 @@ class Spring(_Element):
 
 
 class Dashpot(_Element):
-    """A linear dashpot between a point of one body and a point of another."""
+    """A dashpot between a point of one body and a point of another."""
 
-    damping: Annotated[NonNegativeDamping, Field(description="Damping per side [N s/m]")]
+    damping: Annotated[
+        NonNegativeDamping, Field(description="Damping per side, up to the knee [N s/m]")
+    ]
+    knee: Annotated[
+        PositiveSpeed | None, Field(description="Rate beyond which another damping holds [m/s]")
+    ] = None
+    damping_beyond: Annotated[
+        NonNegativeDamping, Field(description="Damping per side beyond the knee [N s/m]")
+    ] = 0.0
+
+    def without_effect(self) -> set[str]:
+        """Fields that do not tell two dashpots apart: those of a knee where there is none."""
+        none = {"knee", "damping_beyond"} if self.knee is None else set()
+        return super().without_effect() | none
+
+    @model_validator(mode="after")
+    def _has_a_knee(self) -> Dashpot:
+        if self.knee is None and self.damping_beyond > 0.0:
+            raise inconsistent("needs a knee: from which rate on?", "damping_beyond")
+        return self
+
+
+class Stop(_Element):
+    """A bump stop: a force over the travel of one body against another, no force in between.
+
+    Either a gap and the stiffness beyond it, or a table.  Where the table ends, its last slope
+    goes on.
+    """
+
+    gap: Annotated[
+        NonNegativeLength | None,
+        OneOf("travel"),
+        Field(description="Free travel to either side [m]"),
+    ] = None
+    stiffness: Annotated[
+        PositiveStiffness | None, Field(description="Stiffness beyond the gap, per side [N/m]")
+    ] = None
+    travel: Annotated[
+        tuple[NonNegativeLength, ...] | None,
+        OneOf("travel"),
+        Field(description="Table: travel, from zero on [m]"),
+    ] = None
+    force: Annotated[
+        tuple[NonNegativeForce, ...] | None,
+        Field(description="Table: force at each travel, per side [N]"),
+    ] = None
+    travel_factor: Annotated[
+        PositiveNumber, Field(description="Times all travels, gap too: how much they matter")
+    ] = 1.0
+    force_factor: Annotated[
+        PositiveNumber, Field(description="Times all forces, stiffness too: how much they matter")
+    ] = 1.0
+    damping: Annotated[
+        NonNegativeDamping, Field(description="Damping per side while it bears [N s/m]")
+    ] = 0.0
+    one_sided: Annotated[
+        Flag,
+        Field(
+            description="Whether it bears only where the first body moves right or down against "
+            "the second; an equal one at -lateral bears left or down"
+        ),
+    ] = False
+
+    @model_validator(mode="after")
+    def _has_a_table(self) -> Stop:
+        if (self.gap is None) == (self.travel is None):
+            found = "neither" if self.gap is None else "both"
+            raise inconsistent(f"give either gap and stiffness, or travel and force; found {found}")
+        if self.gap is not None and self.stiffness is None:
+            raise inconsistent("is needed beside gap", "stiffness")
+        if self.travel is not None:
+            _refuse_bad_table(self.travel, self.force or ())
+        return self
+
+    @property
+    def force_over_travel(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Travel [m] and force [N]; beyond the last point its last slope goes on."""
+        travel, force = self.travel, self.force
+        if self.gap is not None:
+            assert self.stiffness is not None  # by the validator above
+            start = (0.0,) if self.gap > 0.0 else ()
+            travel = (*start, self.gap, self.gap + 1.0)
+            force = (*start, 0.0, self.stiffness)
+        assert travel is not None and force is not None  # by the validator above
+        return (
+            tuple(self.travel_factor * value for value in travel),
+            tuple(self.force_factor * value for value in force),
+        )
+
+    @property
+    def longest(self) -> float | None:
+        """Travel at which the table ends [m]; a gap with a stiffness has no end."""
+        return None if self.travel is None else self.travel_factor * self.travel[-1]
+
+
+def _refuse_bad_table(travel: tuple[float, ...], force: tuple[float, ...]) -> None:
+    """Refuse a table of a stop that falls, or does not begin at zero."""
+    if len(force) != len(travel):
+        raise inconsistent(
+            f"needs as many values as travel ({len(travel)}), found {len(force)}", "force"
+        )
+    if len(travel) < 2:
+        raise inconsistent("needs two values or more", "travel")
+    if travel[0] != 0.0 or force[0] != 0.0:
+        raise inconsistent(
+            f"table must begin with no force at no travel, found {force[0]:g} N at {travel[0]:g} m",
+            "force",
+        )
+    for before, after in pairwise(travel):
+        if after <= before:
+            raise inconsistent(f"must rise, found {before:g} m, then {after:g} m", "travel")
+    for (before, after), at in zip(pairwise(force), travel[1:], strict=True):
+        if after < before:
+            raise inconsistent(
+                f"must not fall: {before:g} N, then {after:g} N at {at:g} m", "force"
+            )
+    if force[-1] == force[-2]:
+        raise inconsistent("must rise at its end, since its last slope goes on", "force")
+
+
+class AntiRollBar(InputModel):
+    """A torsion spring between two bodies, which only their relative roll twists."""
+
+    name: Annotated[Name, Field(description="Unique among the vehicle's anti-roll bars")]
+    bodies: Annotated[tuple[Name, Name], Field(description="The two bodies, by name")]
+    stiffness: Annotated[
+        PositiveRotationalStiffness, Field(description="Stiffness, all bars together [N m/rad]")
+    ]
+
+    @model_validator(mode="after")
+    def _joins_two_bodies(self) -> AntiRollBar:
+        if self.bodies[0] == self.bodies[1]:
+            raise inconsistent(f'joins "{self.bodies[0]}" to itself; name two bodies', "bodies")
+        return self
 
 
 class Vehicle(FromPreset):
-    """A vehicle: any bodies, and the springs and dashpots between them.
+    """A vehicle: any bodies, and the springs, dashpots, stops and anti-roll bars between them.
 
     The whole vehicle is lumped on one cross-section; the body called `wheelset` carries `axles`
     wheels on each side.  In a case file the bodies, springs and dashpots are tables with the
@@ -125,6 +265,17 @@ class Vehicle(FromPreset):
     dashpots: Annotated[
         tuple[Dashpot, ...], ByName(), Field(description="Dashpots between bodies")
     ] = ()
+    stops: Annotated[tuple[Stop, ...], ByName(), Field(description="Bump stops")] = ()
+    anti_roll_bars: Annotated[
+        tuple[AntiRollBar, ...], ByName(), Field(description="Anti-roll bars")
+    ] = ()
+    kinematics: Annotated[
+        Kinematics,
+        Field(
+            description="Finite rotations with gravity and stops; or linear about the undeformed "
+            "position without gravity's moments, as the paper's car"
+        ),
+    ] = "finite"
     wheelset: Annotated[Name, Field(description="The body that carries the wheels")] = "wheelset"
     axles: Annotated[
         Integer, Field(ge=1, le=1000, description="Wheels on each side that share the load")
@@ -141,14 +292,12 @@ class Vehicle(FromPreset):
         _refuse_repeats("bodies", names)
         _refuse_repeats("springs", [spring.name for spring in self.springs])
         _refuse_repeats("dashpots", [dashpot.name for dashpot in self.dashpots])
+        _refuse_repeats("stops", [stop.name for stop in self.stops])
+        _refuse_repeats("anti_roll_bars", [bar.name for bar in self.anti_roll_bars])
         if self.wheelset not in names:
             advice = did_you_mean(self.wheelset, names)
             raise inconsistent(f'no body is called "{self.wheelset}"; {advice}', "wheelset")
-        elements: tuple[tuple[str, tuple[_Element, ...]], ...] = (
-            ("springs", self.springs),
-            ("dashpots", self.dashpots),
-        )
-        for key, group in elements:
+        for key, group in self._elements():
             for element in group:
                 for name in element.bodies:
                     if name not in names:
@@ -184,6 +333,55 @@ class Vehicle(FromPreset):
             return self.axle_inertia
         (wheelset,) = (body for body in self.bodies if body.name == self.wheelset)
         return 0.3 * wheelset.mass / self.axles * radius**2
+
+    @model_validator(mode="after")
+    def _fits_its_kinematics(self) -> Vehicle:
+        if self.kinematics == "linear":
+            bent = [dashpot.name for dashpot in self.dashpots if dashpot.knee is not None]
+            for key, names in (("stops", [stop.name for stop in self.stops]), ("dashpots", bent)):
+                if names:
+                    what = "has a knee, which" if key == "dashpots" else "is a stop, which"
+                    raise inconsistent(
+                        f'{what} no linear car can have; take kinematics = "finite"',
+                        f"{key}.{names[0]}",
+                    )
+            return self
+        axle = next(body.height for body in self.bodies if body.name == self.wheelset)
+        heaviest = max(self.bodies, key=lambda body: body.mass)
+        low = [(f"bodies.{heaviest.name}.height", heaviest.height)]
+        for key, group in self._elements():
+            low += [
+                (f"{key}.{element.name}.height", min(element.end_heights))
+                for element in group
+                if isinstance(element, _Element)
+            ]
+        for place, height in low:
+            if height < axle - 1e-9:
+                raise inconsistent(
+                    f"{height:g} m lies below the axle, which is {axle:g} m above the rails; "
+                    "heights are measured from the rails upwards",
+                    place,
+                )
+        return self
+
+    def _elements(self) -> tuple[tuple[str, tuple[_Element | AntiRollBar, ...]], ...]:
+        """All that joins bodies, by the name of its field."""
+        return (
+            ("springs", self.springs),
+            ("dashpots", self.dashpots),
+            ("stops", self.stops),
+            ("anti_roll_bars", self.anti_roll_bars),
+        )
+
+    def without_effect(self) -> set[str]:
+        """Fields that do not tell two vehicles apart.
+
+        Linear ones without stops and bars are what vehicles were before there was a choice: rows
+        of older studies stay theirs.
+        """
+        linear = {"kinematics"} if self.kinematics == "linear" else set()
+        none = {key for key in ("stops", "anti_roll_bars") if not getattr(self, key)}
+        return super().without_effect() | linear | none
 
     @property
     def mass(self) -> float:

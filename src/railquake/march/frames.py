@@ -1,8 +1,8 @@
 """A run is a sequence of frames, for one scenario, for many abreast or a thread each on a GPU.
 
 A *frame* has a fixed number of time steps (1 ms by default).  Peaks and energies are taken at
-every step; events, low-pass filters, the test for derailment and the history once a frame.  Within
-a frame the ground's acceleration is linear.
+every step; events, low-pass filters, oscillators on the track, the test for derailment and the
+history once a frame.  Within a frame the ground's acceleration is linear.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from railquake.march.contact import look_at_flanges
 from railquake.march.events import detect_events, release_train
 from railquake.march.ground import begin_frame
-from railquake.march.peaks import filter_forces
+from railquake.march.peaks import OSCILLATORS, filter_forces, swing_on_track
 from railquake.march.rows import constant, size, state
 from railquake.march.step import step
 from railquake.march.structure import refresh_hinge
@@ -71,6 +71,9 @@ def run_frame(S: Array, Q: Array, geometry: Geometry, lanes: int, refresh: int) 
         S[state.TIME, lane] = S[state.FRAMES, lane] * steps * Q[constant.DT, lane]
     for lane in range(lanes):
         filter_forces(S, Q, lane)
+    for n in range(OSCILLATORS):
+        for lane in range(lanes):
+            swing_on_track(S, Q, n, lane)
     for lane in range(lanes):
         detect_events(S, Q, lane)
 
@@ -121,9 +124,10 @@ def march(
         State at the start; holds the state at the end on return.
     constants : array, shape (constant rows, 1)
     geometry : Geometry
-    drive : array, shape (all frames + 1, 2 or 8)
-        Ground acceleration, lateral and vertical (down), at the frames' ends, m/s2, and the
-        motion of a prescribed track (see `ground.begin_frame_on_prescribed_track`).
+    drive : array, shape (all frames + 1, 3 or 9)
+        Ground acceleration, lateral and vertical (down), m/s2, and lateral velocity, m/s, at the
+        frames' ends, and the motion of a prescribed track (see
+        `ground.begin_frame_on_prescribed_track`).
     frames : int
     rows : array of int, shape (channels,)
         State rows to keep.
@@ -174,7 +178,7 @@ def march_abreast(
     state_in, constants : array, shape (its rows, LANES)
         As in `march`; the frame's number of steps must be the same in all lanes.
     geometry : Geometry
-    drive : array, shape (any, 2 or 8)
+    drive : array, shape (any, 3 or 9)
         Drives of all lanes, one after the other.
     lane_rows : (first, stride), arrays of int, shape (LANES,)
         Row of ``drive`` at which each lane's first frame begins, and rows to the next frame (0
@@ -227,7 +231,7 @@ def march_on_device(
         State of each lane, in and out; a lane's rows lie together, for the host's sake.
     constants : array, shape (lanes, constant rows)
     geometry : Geometry
-    drive : array, shape (any, 2 or 8)
+    drive : array, shape (any, 3 or 9)
         Drives of all lanes, one after the other; lanes may share one.
     first : array of int, shape (lanes,)
         Row of ``drive`` at which each lane's motion begins.

@@ -7,15 +7,18 @@ import numpy as np
 from railquake.march.packing import reader
 from railquake.march.rows import constant, state
 from railquake.march.rows_state import FILTERED, POWERS
+from railquake.measures.housner import PERIODS
 from railquake.physics.derailment import derailment_coefficient, least_load
 from railquake.physics.elementary import larger_of
 from railquake.physics.low_pass import Coefficients, Memory, low_pass
+from railquake.physics.oscillator import Step, swing
 
 __all__ = [
     "filter_forces",
     "measure_contact",
     "measure_structure",
     "raise_peak",
+    "swing_on_track",
     "wheels_off",
 ]
 
@@ -23,8 +26,10 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 FILTERS = len(FILTERED)
 KINDS = len(POWERS)
+OSCILLATORS = len(PERIODS)
 
 read_coefficients = reader(Coefficients)
+read_swing = reader(Step)
 
 
 def raise_peak(S: Array, row: int, value: float, lane: int) -> None:
@@ -33,13 +38,15 @@ def raise_peak(S: Array, row: int, value: float, lane: int) -> None:
 
 
 def measure_structure(S: Array, lane: int) -> None:
-    """Peaks of the structure."""
+    """Peaks of the structure and of the track on it."""
     raise_peak(S, state.PEAK_U, S[state.U, lane], lane)
     raise_peak(S, state.PEAK_U_V, S[state.U_V, lane], lane)
     raise_peak(S, state.PEAK_U_A, S[state.U_A, lane] + S[state.GROUND, lane], lane)
     raise_peak(S, state.PEAK_THETA1, S[state.THETA1, lane], lane)
     raise_peak(S, state.PEAK_MOMENT, S[state.MOMENT, lane], lane)
+    raise_peak(S, state.PEAK_DAMPING_MOMENT, S[state.DAMPING_MOMENT, lane], lane)
     raise_peak(S, state.PEAK_THETA2, S[state.THETA2, lane], lane)
+    raise_peak(S, state.PEAK_TRACK_V, S[state.TRACK_VY, lane] + S[state.GROUND_V, lane], lane)
 
 
 def measure_contact(S: Array, Q: Array, lane: int) -> None:
@@ -113,3 +120,13 @@ def filter_forces(S: Array, Q: Array, lane: int) -> None:
     left = derailment_coefficient(y_left, load_left, least)
     right = derailment_coefficient(y_right, load_right, least)
     raise_peak(S, state.PEAK_DERAILMENT_COEFFICIENT, on * max(left, right), lane)
+
+
+def swing_on_track(S: Array, Q: Array, n: int, lane: int) -> None:
+    """Once a frame: oscillator ``n`` of the track's spectral intensity."""
+    push = S[state.TRACK_VY, lane] + S[state.GROUND_V, lane] - S[state.TRACK_V_BEGUN, lane]
+    by = read_swing(Q, constant.SWING_BY + 4 * n, lane)
+    re, im = swing(S[state.SWING_RE + n, lane], S[state.SWING_IM + n, lane], push, by)
+    S[state.SWING_RE + n, lane] = re
+    S[state.SWING_IM + n, lane] = im
+    raise_peak(S, state.PEAK_SWING + n, im, lane)

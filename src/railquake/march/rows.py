@@ -24,11 +24,22 @@ from railquake.march.rows_constant import CONSTANT_ROWS
 from railquake.march.rows_state import PATCHES, STATE_ROWS
 from railquake.physics.contact_table import Polynomials
 from railquake.physics.hinge import HINGE_LAWS
+from railquake.physics.joint import Sides, Spring, Tie
 
 if TYPE_CHECKING:
     from railquake.physics.hinge import HingeLaw
 
-__all__ = ["USUAL", "Layout", "Numbers", "constant", "layout_of", "size", "state"]
+__all__ = [
+    "UNJOINED",
+    "USUAL",
+    "Joined",
+    "Layout",
+    "Numbers",
+    "constant",
+    "layout_of",
+    "size",
+    "state",
+]
 
 
 class Numbers:
@@ -52,6 +63,30 @@ class Numbers:
         made = ModuleType(f"{self.kind}_{digest}".replace(" ", "_"))
         made.__dict__.update(numbers)
         return made
+
+
+class Joined(NamedTuple):
+    """Which joints a car with finite rotations has; what they are like stands in the constants.
+
+    Attributes
+    ----------
+    elements : tuple of (str, int, int)
+        Kind ("spring", "lateral stop", "vertical knee", ...), upper and lower body; springs first,
+        then stops, then dashpots with a knee.
+    ramps : int
+        Most changes of stiffness of any stop.
+    """
+
+    elements: tuple[tuple[str, int, int], ...]
+    ramps: int
+
+    def count(self, family: str) -> int:
+        """How many are a "spring", a "stop" or a "knee"."""
+        return sum(kind.split()[-1] == family for kind, _, _ in self.elements)
+
+
+UNJOINED = Joined((), 0)
+"""The linear car, whose joints are matrices."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +167,12 @@ def _place(rows: Sequence[Row], sizes: Mapping[str, int]) -> _Placed:
 
 @cache
 def _layout(
-    hinge: HingeLaw, bodies: int, lateral: int, structure: tuple[int, int, int, int], lanes: int
+    hinge: HingeLaw,
+    bodies: int,
+    lateral: int,
+    structure: tuple[int, int, int, int],
+    lanes: int,
+    joined: Joined,
 ) -> Layout:
     dofs = 3 * bodies
     count, top, hinge_at, top_roll = structure
@@ -150,6 +190,7 @@ def _layout(
         "TOP": top,
         "HINGE": hinge_at,
         "TOP_ROLL": top_roll,
+        **_joined_sizes(joined, bodies),
         "POLYNOMIAL_FIELDS": len(Polynomials._fields),
         "POLYNOMIAL_ROWS": len(PATCHES) * len(Polynomials._fields),
     }
@@ -168,6 +209,25 @@ def _layout(
     )
 
 
+def _joined_sizes(joined: Joined, bodies: int) -> dict[str, int]:
+    """Sizes of the joints' rows."""
+    elements, stops = len(joined.elements), joined.count("stop")
+    return {
+        "TURNED": bodies if elements else 0,
+        "STOPS": stops,
+        "RAMPS": joined.ramps,
+        "TIE_FIELDS": len(Tie._fields),
+        "SPRING_FIELDS": len(Spring._fields),
+        "SIDES_FIELDS": len(Sides._fields),
+        "TIE_ROWS": len(Tie._fields) * elements,
+        "GAP_ROWS": 2 * elements,
+        "SPRING_ROWS": len(Spring._fields) * joined.count("spring"),
+        "SIDES_ROWS": len(Sides._fields) * stops,
+        "RAMP_ROWS": joined.ramps * stops,
+        "KNEE_ROWS": 3 * joined.count("knee"),
+    }
+
+
 PIER = (3, 0, 1, 2)
 """Degrees of freedom of the pier, and which are the top's displacement, the hinge's rotation and
 the top's rotation."""
@@ -179,6 +239,7 @@ def layout_of(
     lateral: int = 6,
     structure: tuple[int, int, int, int] = PIER,
     lanes: int = 1,
+    joined: Joined = UNJOINED,
 ) -> Layout:
     """Layout of a run.
 
@@ -194,8 +255,10 @@ def layout_of(
         carries the track and the rotation of its hinge; see `PIER`.
     lanes : int
         Scenarios abreast.
+    joined : Joined
+        The vehicle's joints, if it turns by any angle.
     """
-    return _layout(hinge, bodies, lateral, structure, lanes)
+    return _layout(hinge, bodies, lateral, structure, lanes, joined)
 
 
 USUAL = layout_of(HINGE_LAWS["bouc-wen"])

@@ -1,6 +1,7 @@
 """The rows of the constants ``Q[row, lane]``: everything of a run that stays fixed."""
 
 from railquake.march.declaration import Row, block, row
+from railquake.measures.housner import PERIODS
 
 __all__ = ["CONSTANT_GROUPS", "CONSTANT_ROWS"]
 
@@ -25,7 +26,15 @@ _STRUCTURE = (
     row("GROUND_LOAD", "kg", "what the ground's acceleration acts on", rows="STRUCTURE"),
     row("MASS", "kg or kg m2", "masses and inertias (Eq. 9)", rows="STRUCTURE"),
     row("K", "N/m, N or N m", "stiffness, hinge apart (Eq. 10)", rows="STRUCTURE_ENTRIES"),
-    row("C", "N s/m, N s or N m s", "damping", rows="STRUCTURE_ENTRIES"),
+    row("C", "N s/m, N s or N m s", "damping, hinge apart", rows="STRUCTURE_ENTRIES"),
+    block(
+        "HINGE_DAMPING",
+        "of the hinge itself (`pier.HingeDamping`)",
+        (
+            ("DAMPING_CONSTANT", "N m s", "whatever the hinge does"),
+            ("DAMPING_PER_TANGENT", "s", "times the hinge's tangent"),
+        ),
+    ),
     row("FLEX", "m/N, 1/N or 1/(N m)", "inverse of Newmark's matrix", rows="STRUCTURE_ENTRIES"),
     block(
         "OFFSET",
@@ -90,6 +99,12 @@ _MEASURES = (
         "low-pass of the frame means (`low_pass.Coefficients`)",
         [(f"FILTER_{name}", "1", f"{name.lower()}") for name in ("B0", "B1", "B2", "A1", "A2")],
     ),
+    row(
+        "SWING_BY",
+        "1",
+        "a frame's step of each oscillator on the track (`oscillator.Step`)",
+        rows=4 * len(PERIODS),
+    ),
 )
 
 # in the order of `march.order`
@@ -100,12 +115,24 @@ _VEHICLE = (
     row("DAMPING", "N s/m, N s or N m s", "C_v", rows="VEHICLE_ENTRIES"),
 )
 
+# of a car with finite rotations (`joints`), one after the other
+_JOINTS = (
+    row("TIES", "m", "points of each element (`joint.Tie`)", rows="TIE_ROWS"),
+    row("GAPS", "m", "d_0 of each element, y and z", rows="GAP_ROWS"),
+    row("SPRINGS", "SI", "springs and dashpots (`joint.Spring`)", rows="SPRING_ROWS"),
+    row("STOP_SIDES", "1, 1 and N s/m", "of each stop (`joint.Sides`)", rows="SIDES_ROWS"),
+    row("RAMP_TRAVEL", "m", "where each stop's stiffness changes", rows="RAMP_ROWS"),
+    row("RAMP_SLOPE", "N/m", "and by how much", rows="RAMP_ROWS"),
+    row("KNEES", "m/s and N s/m", "knee, damping below and beyond it", rows="KNEE_ROWS"),
+)
+
 CONSTANT_GROUPS: dict[str, tuple[Row, ...]] = {
     "time steps": _TIME,
     "structure": _STRUCTURE,
     "contact": _CONTACT,
     "measures": _MEASURES,
     "vehicle": _VEHICLE,
+    "joints": _JOINTS,
 }
 CONSTANT_ROWS: tuple[Row, ...] = tuple(row for group in CONSTANT_GROUPS.values() for row in group)
 # the hinge's own rows follow: `rows.hinge_parts`

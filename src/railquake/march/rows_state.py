@@ -2,6 +2,7 @@
 
 from railquake.march.declaration import Row, block, row
 from railquake.measures import MEASURES, StateRow
+from railquake.measures.housner import PERIODS
 from railquake.physics.derailment import EVENTS
 
 __all__ = ["FILTERED", "PATCHES", "POWERS", "STATE_GROUPS", "STATE_ROWS"]
@@ -15,6 +16,7 @@ _GROUND = (
     row("GROUND_SLOPE", "m/s2", "its change per step of the structure"),
     row("GROUND_Z", "m/s2", "ground acceleration, down", "ground_acceleration_down_m_s2"),
     row("GROUND_Z_SLOPE", "m/s2", "its change per step of the structure"),
+    row("GROUND_V", "m/s", "ground velocity, lateral, its least-squares line removed"),
 )
 
 # Eqs. 9, 10: of the pier u, theta_1 at the base and theta_2 at the top; of any structure the
@@ -59,6 +61,8 @@ _STRUCTURE = (
     row("UNBALANCED", "N or N m", "what a step's increments must balance", rows="STRUCTURE"),
     row("STRUCTURE_STEP", "m or rad", "increments of the last step", rows="STRUCTURE"),
     row("MOMENT", "N m", "moment of the hinge", "base_moment_n_m"),
+    row("TANGENT", "N m/rad", "tangent of the hinge"),
+    row("DAMPING_MOMENT", "N m", "of the hinge's damping, beside its own", "damping_moment_n_m"),
 )  # fmt: skip
 
 _TRACK = (
@@ -81,6 +85,10 @@ _TRACK = (
         ),
     ),
     row("TRACK_A", "m/s2 or rad/s2", "its acceleration during the structure's step", rows=3),
+    row("TRACK_V_BEGUN", "m/s", "its lateral velocity at the frame's begin, the ground's added"),
+    row("SWING_RE", "m/s", "oscillators on the track, one a period: real part", rows=len(PERIODS)),
+    row("SWING_IM", "m/s", "imaginary part", rows=len(PERIODS)),
+    row("PEAK_SWING", "m/s", "largest imaginary part", rows=len(PERIODS)),
     row("TRACK_SIN", "1", "sine of its roll"),
     row("TRACK_COS", "1", "cosine of its roll"),
 )
@@ -292,6 +300,12 @@ _VEHICLE = (
     row("VEHICLE_A_OLD", "m/s2 or rad/s2", "acceleration before", rows="DOFS", released=True),
     row("VEHICLE_STEP", "m or rad", "last increment of the displacement", rows="DOFS"),
 )
+# of a car with finite rotations (`joints`)
+_JOINTS = (
+    row("BODY_SIN", "1", "sine of each body's roll", rows="TURNED"),
+    row("BODY_COS", "1", "its cosine", rows="TURNED"),
+    row("STOP_TRAVEL", "m", "largest travel of each stop", rows="STOPS"),
+)
 
 _BEFORE = {
     "ground": _GROUND,
@@ -304,7 +318,7 @@ _BEFORE = {
     "suspension between its evaluations": _SUSPENSION,
     "energy": _ENERGY,
 }
-_AFTER = {"frame": _FRAME, "prescribed track": _PRESCRIBED, "vehicle": _VEHICLE}
+_AFTER = {"frame": _FRAME, "prescribed track": _PRESCRIBED, "vehicle": _VEHICLE, "joints": _JOINTS}
 
 
 def _measured() -> tuple[Row, ...]:

@@ -12,13 +12,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from railquake.laws import CREEP_LAWS, HINGE_LAWS, RESTITUTION_LAWS, Family
-from railquake.march import contact, frames, ground, structure, track
+from railquake.march import contact, frames, ground, sprung, structure, track
+from railquake.march.joints import joined_laws
 from railquake.march.packing import reader, writer
+from railquake.march.rows import UNJOINED, Joined
 from railquake.physics import creep, elementary, hinge, impact
 from railquake.physics.creep import CreepLaw
 from railquake.physics.hinge import HingeLaw
 
-__all__ = ["SLOTS", "Slot", "chosen", "solving"]
+__all__ = ["SLOTS", "Slot", "chosen", "joining", "solving"]
 
 Law = Callable[..., Any]
 Laws = Mapping[Law, Law]
@@ -104,6 +106,10 @@ _PRESCRIBED: Laws = {
     track.lead_track: track.lead_prescribed_track,
     ground.begin_frame: ground.begin_frame_on_prescribed_track,
 }
+_LINEAR: Laws = {
+    sprung.accelerate_free: sprung.accelerate_linear,
+    sprung.vehicle_energy: sprung.linear_energy,
+}
 _TABLE: Laws = {
     contact.locate_cells: contact.locate_in_table,
     contact.fetch_cells: contact.fetch_polynomials,
@@ -166,6 +172,10 @@ SLOTS: tuple[Slot, ...] = (
         _hinge,
     ),
     _fixed("structure", "`support.kind`", {"node": _NODE, "prescribed": _PRESCRIBED}),
+    # of a car with finite rotations each has its own: `joining`
+    _fixed(
+        "kinematics", "`vehicle.kinematics`", {"linear": _LINEAR, "finite": joined_laws(UNJOINED)}
+    ),
     _fixed("contact method", "`solver.contact`", {"table": _TABLE, "grid": _GRID}),
     _fixed(
         "engine",
@@ -203,6 +213,11 @@ def _laws_of(choices: Mapping[str, str]) -> Iterator[Laws]:
     known = {slot.name: slot for slot in SLOTS}
     for name, choice in choices.items():
         yield known[name].laws(choice)
+
+
+def joining(joined: Joined) -> dict[Law, Law]:
+    """What stands in the slots of the vehicle for a car with these joints, if it has any."""
+    return dict(joined_laws(joined)) if joined.elements else {}
 
 
 def solving(hinge_law: str, linearised: bool, abreast: bool) -> dict[Law, Law]:

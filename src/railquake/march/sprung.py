@@ -11,8 +11,9 @@ from railquake.physics.vehicle import free_acceleration
 from railquake.physics.zhai import predict_displacement, predict_velocity
 
 __all__ = [
-    "accelerate_lateral",
-    "accelerate_vertical",
+    "accelerate_free",
+    "accelerate_linear",
+    "linear_energy",
     "lose_to_dashpots",
     "predict",
     "predict_sprung",
@@ -66,6 +67,26 @@ def work_on_bodies(S: Array, Q: Array, lane: int) -> None:
     S[state.DASHPOT_POWER, lane] = 0.0
 
 
+def accelerate_free(S: Array, Q: Array, lanes: int) -> None:
+    """Slot of the vehicle: accelerations of all bodies, contact forces left out."""
+    raise NotImplementedError("a vehicle's kinematics are chosen when a kernel is bound")
+
+
+def vehicle_energy(S: Array, Q: Array, lane: int) -> float:
+    """Slot of the vehicle: its kinetic and elastic energy now, J."""
+    raise NotImplementedError("a vehicle's kinematics are chosen when a kernel is bound")
+
+
+def accelerate_linear(S: Array, Q: Array, lanes: int) -> None:
+    """Eq. 1: rows that are coupled to each other only, lateral and roll first."""
+    for lane in range(lanes):
+        for i in range(size.LATERAL):
+            accelerate_lateral(S, Q, i, lane)
+    for lane in range(lanes):
+        for i in range(size.LATERAL, size.DOFS):
+            accelerate_vertical(S, Q, i, lane)
+
+
 def accelerate_lateral(S: Array, Q: Array, i: int, lane: int) -> None:
     """Row ``i`` of Eq. 1 in the first block, contact forces left out."""
     accelerate(S, Q, i, 0, size.LATERAL, lane)
@@ -106,8 +127,8 @@ def lose_to_dashpots(S: Array, Q: Array, lane: int) -> None:
     )
 
 
-def vehicle_energy(S: Array, Q: Array, lane: int) -> float:
-    """Kinetic and elastic energy of the vehicle now, J."""
+def linear_energy(S: Array, Q: Array, lane: int) -> float:
+    """Kinetic and elastic energy of a vehicle with the matrices of Eq. 1, J."""
     energy = 0.0
     for i in range(size.DOFS):
         force = 0.0

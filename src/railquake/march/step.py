@@ -21,10 +21,10 @@ from railquake.march.ground import move_ground
 from railquake.march.peaks import measure_contact, measure_structure
 from railquake.march.rows import size
 from railquake.march.sprung import (
-    accelerate_lateral,
-    accelerate_vertical,
+    accelerate_free,
     lose_to_dashpots,
     predict_sprung,
+    vehicle_energy,
     work_on_bodies,
 )
 from railquake.march.structure import move_structure
@@ -40,7 +40,7 @@ from railquake.march.wheelset import (
 )
 from railquake.physics.profiles import Geometry
 
-__all__ = ["find_contact_forces", "step"]
+__all__ = ["find_contact_forces", "find_free_accelerations", "find_vehicle_energy", "step"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -86,7 +86,7 @@ def step(S: Array, Q: Array, geometry: Geometry, lanes: int, substeps: int) -> N
 def load_structure(S: Array, Q: Array, lanes: int) -> None:
     """The ground at the step's end; the last contact forces on the track where it is."""
     for lane in range(lanes):
-        move_ground(S, lane)
+        move_ground(S, Q, lane)
         load_track(S, Q, lane)
         place_track(S, Q, lane)
         orient_track(S, lane)
@@ -142,15 +142,10 @@ def carry_suspension(S: Array, lanes: int) -> None:
 
 
 def accelerate_bodies(S: Array, Q: Array, lanes: int) -> None:
-    """Eq. 1: accelerations of all bodies, the contact forces on the wheelset left out."""
+    """Accelerations of all bodies, the contact forces on the wheelset left out."""
     for lane in range(lanes):
         work_on_bodies(S, Q, lane)
-    for lane in range(lanes):
-        for i in range(size.LATERAL):
-            accelerate_lateral(S, Q, i, lane)
-    for lane in range(lanes):
-        for i in range(size.LATERAL, size.DOFS):
-            accelerate_vertical(S, Q, i, lane)
+    accelerate_free(S, Q, lanes)
     for lane in range(lanes):
         lose_to_dashpots(S, Q, lane)
     for lane in range(lanes):
@@ -178,3 +173,13 @@ def find_contact_forces(S: Array, Q: Array, geometry: Geometry) -> None:
             press_patch(S, Q, geometry, side, zone, 0)
     add_wheels(S, Q, 0)
     load_track(S, Q, 0)
+
+
+def find_free_accelerations(S: Array, Q: Array) -> None:
+    """The suspension's stage of `step` alone, for one scenario at rest or held."""
+    accelerate_free(S, Q, 1)
+
+
+def find_vehicle_energy(S: Array, Q: Array) -> float:
+    """Energy of the vehicle, for one scenario, J."""
+    return vehicle_energy(S, Q, 0)

@@ -2,7 +2,8 @@
 
 Newmark's method asks in each step for increments dx with ``K* dx + M_hinge = b`` (see `newmark`).
 The structure being linear otherwise, they are condensed on the rotation of the hinge, whose law
-answers how far it turns.
+answers how far it turns.  A dashpot turns with the hinge: of its initial stiffness, of its tangent
+at the step's begin, or of nothing (`pier.HingeDamping`).
 """
 
 from typing import Any
@@ -12,7 +13,7 @@ import numpy as np
 from railquake.march.packed import packed
 from railquake.march.rows import constant, size, state
 from railquake.physics.hinge import advance, refresh
-from railquake.physics.newmark import new_acceleration, new_velocity
+from railquake.physics.newmark import beside_dashpot, new_acceleration, new_velocity
 
 __all__ = [
     "hold_structure",
@@ -67,14 +68,24 @@ def move_structure_with_hinge(S: Array, Q: Array, lane: int) -> None:
         )
 
     hinge = constant.FLEX + packed(size.HINGE, size.HINGE, size.STRUCTURE)
+    hinge_v = S[state.STRUCTURE_V + size.HINGE, lane]
+    damping = hinge_damping(S, Q, lane)
+    free_step, flexibility = beside_dashpot(
+        times(Q, constant.FLEX, S, state.UNBALANCED, size.HINGE, lane),
+        Q[hinge, lane],
+        damping,
+        hinge_v,
+        rate,
+    )
     answer = advance(
         S[state.STRUCTURE_X + size.HINGE, lane],
         read_hinge(S, state.HINGE, lane),
         read_hinge_parameters(Q, constant.HINGE, lane),
-        times(Q, constant.FLEX, S, state.UNBALANCED, size.HINGE, lane),
-        Q[hinge, lane],
+        free_step,
+        flexibility,
     )
-    S[state.UNBALANCED + size.HINGE, lane] -= answer.moment
+    damping_moment = damping * new_velocity(answer.step, hinge_v, rate)
+    S[state.UNBALANCED + size.HINGE, lane] -= answer.moment + damping_moment
     for i in range(size.STRUCTURE):
         S[state.STRUCTURE_STEP + i, lane] = (
             answer.step
@@ -87,7 +98,8 @@ def move_structure_with_hinge(S: Array, Q: Array, lane: int) -> None:
     for i in range(size.STRUCTURE):
         step = S[state.STRUCTURE_STEP + i, lane]
         S[state.WORK_GROUND, lane] -= Q[constant.GROUND_LOAD + i, lane] * mean_ground * step
-    S[state.LOST_RAYLEIGH, lane] += rate * damped(S, Q, lane)
+    mean_damping_moment = 0.5 * (S[state.DAMPING_MOMENT, lane] + damping_moment)
+    S[state.LOST_RAYLEIGH, lane] += rate * damped(S, Q, lane) + mean_damping_moment * answer.step
     S[state.HINGE_ENERGY, lane] += 0.5 * (S[state.MOMENT, lane] + answer.moment) * answer.step
 
     for i in range(size.STRUCTURE):
@@ -100,7 +112,18 @@ def move_structure_with_hinge(S: Array, Q: Array, lane: int) -> None:
         )
     write_hinge(S, state.HINGE, answer.state, lane)
     S[state.MOMENT, lane] = answer.moment
+    S[state.TANGENT, lane] = answer.tangent
+    S[state.DAMPING_MOMENT, lane] = damping_moment
     S[state.UNCONVERGED, lane] += answer.unconverged
+
+
+def hinge_damping(S: Array, Q: Array, lane: int) -> float:
+    """Of the hinge itself, N m s; where its moment falls as it turns, that takes nothing away."""
+    tangent = max(S[state.TANGENT, lane], 0.0)
+    damping: float = (
+        Q[constant.DAMPING_CONSTANT, lane] + Q[constant.DAMPING_PER_TANGENT, lane] * tangent
+    )
+    return damping
 
 
 def times(Q: Array, matrix: int, S: Array, vector: int, i: int, lane: int) -> float:
@@ -112,7 +135,7 @@ def times(Q: Array, matrix: int, S: Array, vector: int, i: int, lane: int) -> fl
 
 
 def damped(S: Array, Q: Array, lane: int) -> float:
-    """dx^T C dx of the last increments dx: what damping takes, over the step's rate."""
+    """dx^T C dx of the last increments dx: what damping but the hinge's takes, over the rate."""
     total = 0.0
     for i in range(size.STRUCTURE):
         step = S[state.STRUCTURE_STEP + i, lane]

@@ -69,6 +69,19 @@ MEASURES: tuple[Measure, ...] = (
         meaning=r"$\frac{\pi}{2g}\int a^2 dt$", place=AttributeOf("system.ground.arias_intensity"),
     ),
     Measure(
+        "si_ground_m_s", Kind.GROUND, "m/s", "SI", "spectral intensity of the ground",
+        meaning="Housner's: mean of the pseudo-velocity spectrum of the lateral motion from 0.1 to "
+        "2.5 s, 20 % damping; 1 m/s is 100 kine",
+        place=WorkedOut("spectral_intensity"),
+    ),
+    Measure(
+        "jma_intensity", Kind.GROUND, "1", "JMA intensity", "JMA instrumental intensity",
+        optional=True,
+        meaning="of the lateral motion, and of the vertical one where there is one; JMA's own "
+        "takes three components; none for a ground at rest",
+        place=WorkedOut("jma_intensity"),
+    ),
+    Measure(
         "sa_t1_m_s2", Kind.GROUND, "m/s2", "Sa(T₁)", "spectral acceleration at T₁",
         optional=True,
         meaning="pseudo-spectral acceleration of the lateral motion, 5 % damping, at the "
@@ -96,12 +109,36 @@ MEASURES: tuple[Measure, ...] = (
         paired=True, intensity=Intensity(2, "pba", "Peak Floor Acceleration", "mps2"),
     ),
     Measure(
+        "track_velocity_peak_m_s", Kind.STRUCTURE, "m/s", "track velocity",
+        "peak velocity of the track",
+        meaning="lateral, absolute: the ground's as in `pgv_m_s` and the track's relative to it; "
+        "one axis for piers and at grade, where it is the ground's",
+        place=StateRow("PEAK_TRACK_V"),
+        intensity=Intensity(
+            7, "track_velocity", "Peak Floor Velocity", "mps", with_uplift=False
+        ),
+    ),
+    Measure(
+        "si_track_m_s", Kind.STRUCTURE, "m/s", "SI of the track",
+        "spectral intensity of the track",
+        meaning="as `si_ground_m_s`, of the track's absolute lateral motion, seen once a frame",
+        place=WorkedOut("track_intensity"),
+    ),
+    Measure(
         "hinge_rotation_peak_rad", Kind.STRUCTURE, "rad", "hinge rotation", "peak hinge rotation",
         factor=1e3, shown_unit="mrad", meaning=r"$\theta_1$", place=StateRow("PEAK_THETA1"),
     ),
     Measure(
         "base_moment_peak_n_m", Kind.STRUCTURE, "N m", "base moment", "peak base moment",
         factor=1e-6, shown_unit="MN m", meaning="of the hinge", place=StateRow("PEAK_MOMENT"),
+    ),
+    Measure(
+        "damping_moment_peak_n_m", Kind.STRUCTURE, "N m", "damping moment",
+        "peak damping moment at the hinge",
+        factor=1e-6, shown_unit="MN m",
+        meaning="of the damping beside the hinge, which the pier's foot bears over its "
+        "`base_moment_peak_n_m`; zero with `damping_of = \"column\"`",
+        place=StateRow("PEAK_DAMPING_MOMENT"),
     ),
     Measure(
         "top_rotation_peak_rad", Kind.STRUCTURE, "rad", "top rotation", "peak rotation of the top",
@@ -143,6 +180,13 @@ MEASURES: tuple[Measure, ...] = (
         factor=1e-3, shown_unit="kN",
         meaning="of all wheels of one side together, normal to the plane of the track, raw",
         place=StateRow("PEAK_LOAD"),
+    ),
+    Measure(
+        "stop_use_peak", Kind.TRAIN, "1", "use of stops", "largest use of a bump stop",
+        optional=True,
+        meaning="largest travel of a stop over that at which its table ends; beyond 1 its last "
+        "slope has gone on. None for a car without such stops",
+        place=WorkedOut("stop_use"),
     ),
     Measure(
         "wheel_unloading_peak", Kind.TRAIN, "1", "unloading", "peak unloading of one side",

@@ -137,7 +137,8 @@ def power_polynomial(x: float, n: float) -> float:
 def sin_cos(x: float) -> tuple[float, float]:
     """sin(x) and cos(x) for abs(x) <= 1 by their Taylor series; error below 2e-15 there.
 
-    The rolls of a wheelset that has not yet overturned stay below pi/4.
+    A wheelset that has not yet overturned stays below pi/4; at pi/2, where no body comes, the error
+    is 6e-12.
     """
     q = x * x
     sine = x * (

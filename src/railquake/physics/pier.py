@@ -5,14 +5,16 @@
 X_s = (u, theta_1, theta_2): lateral displacement of the top, rotations at base and top; the
 rotations are positive against phi, so a rigid rotation of the column is u = -L theta.  The
 column's stiffness is Eq. 10, the hinge's tangent being added at (theta_1, theta_1).  Rayleigh
-damping is set on the first two modes of the initial stiffness, hinge included.
+damping C_s = a M_s + b K has its ratio in the first two modes of the initial stiffness, hinge
+included; which stiffness of the hinge then stands in K is a choice (`HingeDamping`).
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 __all__ = [
+    "HingeDamping",
     "geometric_stiffness",
     "natural_frequencies",
     "rayleigh_coefficients",
@@ -21,6 +23,20 @@ __all__ = [
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+class HingeDamping(NamedTuple):
+    """The hinge's own damping moment over its rate: constant + per_tangent times its tangent.
+
+    With the hinge's initial stiffness in K the moment stays b k_0 theta_1' after the hinge has
+    yielded, when its own no longer grows.  Charney (2008), "Unintended consequences of modeling
+    damping in structures", Journal of Structural Engineering 134(4), 581-592.
+    """
+
+    constant: float
+    """N m s."""
+    per_tangent: float
+    """s."""
 
 
 def stiffness_matrix(
@@ -68,8 +84,7 @@ def rayleigh_coefficients(mass: Array, stiffness: Array, ratio: float) -> tuple[
     return 2.0 * ratio * first * second / (first + second), 2.0 * ratio / (first + second)
 
 
-def rayleigh_damping(mass: Array, stiffness: Array, ratio: float) -> Array:
-    """C = a M + b K with the damping ratio ``ratio`` in the first two modes of ``stiffness``."""
-    a, b = rayleigh_coefficients(mass, stiffness, ratio)
+def rayleigh_damping(mass: Array, stiffness: Array, a: float, b: float) -> Array:
+    """C = a M + b K, with a in 1/s and b in s; ``mass`` is the diagonal."""
     matrix: Array = a * np.diag(mass) + b * stiffness
     return matrix

@@ -1,4 +1,4 @@
-"""The suspension: linear springs and dashpots between the bodies of a vehicle (Eq. 1 of the paper).
+"""The suspension: linear springs and dashpots between a vehicle's bodies (Eq. 1 of the paper).
 
 An element joins a point of one body to a point of another, along y or z.  A point at (p_y, p_z)
 from a body's centre of gravity is displaced by (y - p_z phi, z + p_y phi), linearly about the
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["element_matrix", "element_row"]
+__all__ = ["element_matrix", "element_row", "roll_row"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -45,6 +45,13 @@ def element_row(
         row[3 * body] += sign * direction[0]
         row[3 * body + 1] += sign * direction[1]
         row[3 * body + 2] += sign * (direction[1] * y - direction[0] * z)
+    return row
+
+
+def roll_row(bodies: int, first: int, second: int) -> Array:
+    """Twist of an anti-roll bar per unit of each degree of freedom, shape (3 * bodies,)."""
+    row = np.zeros(3 * bodies)
+    row[3 * first + 2], row[3 * second + 2] = 1.0, -1.0
     return row
 
 

@@ -50,11 +50,12 @@ def fixed_wheelset_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     Returns
     -------
     frequencies : array, shape (n - 3,)
+        Negative where the mode is unstable: -sqrt(-omega^2)/(2 pi).
     shapes : array, shape (n - 3, n - 3)
         Column i is mode i, normalised to unit modal mass.
     """
     free = slice(0, len(mass) - 3)
     root = 1.0 / np.sqrt(mass[free])
     values, vectors = np.linalg.eigh(stiffness[free, free] * np.outer(root, root))
-    frequencies = np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi)
+    frequencies = np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi)
     return frequencies, vectors * root[:, None]

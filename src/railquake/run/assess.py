@@ -10,10 +10,22 @@ from importlib.metadata import version as installed_version
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from railquake import measures
+from railquake.inputs.ground_motion import jma_intensity
 from railquake.inputs.support import Pier
-from railquake.measures import AttributeOf, EventTime, Place, StateRow, StateTime, WorkedOut
+from railquake.measures import (
+    AttributeOf,
+    EventTime,
+    Place,
+    StateRow,
+    StateTime,
+    WorkedOut,
+    housner,
+)
 from railquake.physics import derailment
+from railquake.physics.oscillator import pseudo_velocity
 from railquake.run import spectral
 
 if TYPE_CHECKING:
@@ -104,6 +116,13 @@ def _wheel_unloading(response: Response) -> float:
     return 1.0 - _row(response, "LOWEST_LOAD") / response.system.static_wheel_load
 
 
+def _stop_use(response: Response) -> float | None:
+    layout, ends = response.system.layout, np.array(response.system.vehicle.joints.ends)
+    travel = response.end[layout.state_blocks["STOP_TRAVEL"], 0]
+    tables = np.isfinite(ends)
+    return float((travel[tables] / ends[tables]).max()) if tables.any() else None
+
+
 def _speed(response: Response) -> float:
     return response.steps / max(response.march_s, 1e-9)
 
@@ -129,14 +148,30 @@ def _spectral_acceleration(response: Response) -> float | None:
     return spectral.spectral_acceleration(response.system.ground, period)
 
 
+def _track_intensity(response: Response) -> float:
+    largest = response.end[response.system.layout.state_blocks["PEAK_SWING"], 0]
+    found = [pseudo_velocity(float(im), housner.DAMPING) for im in largest]
+    return housner.spectral_intensity(found)
+
+
+def _jma_intensity(response: Response) -> float | None:
+    vertical = response.system.scenario.vertical_motion()
+    others = () if vertical is None else (vertical,)
+    return jma_intensity(response.system.ground, *others)
+
+
 _WORKED_OUT: Mapping[str, Callable[[Response], Any]] = {
     "derailed": lambda response: response.derailment_mode is not None,
     "hinge_law": _hinge_law,
+    "jma_intensity": _jma_intensity,
     "period": _period,
     "spectral_acceleration": _spectral_acceleration,
+    "spectral_intensity": lambda response: spectral.spectral_intensity(response.system.ground),
     "speed": _speed,
     "time_step_error": _time_step_error,
+    "track_intensity": _track_intensity,
     "uplift_ratio": _uplift_ratio,
     "versions": lambda _: versions(),
     "wheel_unloading": _wheel_unloading,
+    "stop_use": _stop_use,
 }

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.march.packed import unpacked
+from railquake.march.order import kernel_order
 from railquake.physics.energy import EnergyAudit, Works, contact_residual, whole_residual
 
 if TYPE_CHECKING:
@@ -28,18 +28,24 @@ def audit(system: System, end: Array) -> EnergyAudit:
     state, blocks = system.layout.state, system.layout.state_blocks
     constants = system.layout.constant_blocks
     first, last, q = system.start[:, 0], end[:, 0], system.constants[:, 0]
-    suspension = unpacked(q[constants["STIFFNESS"]])
     inverse_mass = q[constants["INVERSE_MASS"]]
     structure = system.structure
+    order = kernel_order(system.layout.size.DOFS)
+
+    def stored_in_suspension(s: Array) -> float:
+        """Elastic energy of the vehicle."""
+        x = np.empty(len(order))
+        x[order] = s[blocks["VEHICLE_X"]]
+        return system.vehicle.elastic_energy(x)
 
     def stored(s: Array) -> tuple[float, float]:
         """Kinetic and elastic energy."""
         x, v = s[blocks["STRUCTURE_X"]], s[blocks["STRUCTURE_V"]]
         kinetic = 0.5 * float(v @ (structure.mass * v)) if structure.moves else 0.0
         elastic = 0.5 * float(x @ structure.stiffness @ x) if structure.moves else 0.0
-        x, v = s[blocks["VEHICLE_X"]], s[blocks["VEHICLE_V"]]
+        v = s[blocks["VEHICLE_V"]]
         kinetic += 0.5 * float(v @ (v / inverse_mass))
-        elastic += 0.5 * float(x @ suspension @ x)
+        elastic += stored_in_suspension(s)
         return kinetic, elastic
 
     kinetic_start, elastic_start = stored(first)
@@ -47,8 +53,7 @@ def audit(system: System, end: Array) -> EnergyAudit:
     # a vehicle that has left the model took its kinetic energy along
     gone = 0.0
     if last[state.ON_TRACK] == 0.0:
-        x = last[blocks["VEHICLE_X"]]
-        gone = float(last[state.VEHICLE_ENERGY]) - 0.5 * float(x @ suspension @ x)
+        gone = float(last[state.VEHICLE_ENERGY]) - stored_in_suspension(last)
     kinetic = kinetic_end - kinetic_start + gone
     elastic = elastic_end - elastic_start
     hertz = float(last[state.HERTZ_ENERGY] + last[state.HERTZ_LEFT] - first[state.HERTZ_ENERGY])

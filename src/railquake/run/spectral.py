@@ -1,4 +1,4 @@
-"""First period of a structure, and the spectral acceleration of a motion there."""
+"""First period of a structure, and spectral ordinates of a motion."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from railquake.inputs.ground_motion import spectrum
+from railquake.measures import housner
 from railquake.physics.pier import natural_frequencies, stiffness_matrix
 
 if TYPE_CHECKING:
     from railquake.inputs.ground_motion import GroundMotion
     from railquake.inputs.support import Pier
 
-__all__ = ["DAMPING", "first_period", "spectral_acceleration"]
+__all__ = ["DAMPING", "first_period", "spectral_acceleration", "spectral_intensity"]
 
 DAMPING = 0.05
-REMEMBERED = 64
+REMEMBERED = 64  # motions
 
 
 def first_period(pier: Pier) -> float:
@@ -54,15 +55,45 @@ def spectral_acceleration(ground: GroundMotion, period: float) -> float:
     float
         What `response_spectrum` gives, to rounding; remembered for runs that share a motion.
     """
-    return _ordinate(ground.acceleration.tobytes(), ground.dt, period)
+    return 2.0 * math.pi / period * _ordinate(ground.acceleration.tobytes(), ground.dt, period)
+
+
+def spectral_intensity(ground: GroundMotion) -> float:
+    """Housner's spectral intensity of a motion, m/s.
+
+    Parameters
+    ----------
+    ground : GroundMotion
+
+    Returns
+    -------
+    float
+        What `ground_motion.spectral_intensity` gives, to rounding; remembered likewise.
+    """
+    return _intensity(ground.acceleration.tobytes(), ground.dt)
+
+
+# The content of the motion is the key: what was run, not the file that it came from.
 
 
 @lru_cache(maxsize=REMEMBERED)
 def _ordinate(samples: bytes, dt: float, period: float) -> float:
-    """The content of the motion is the key: what was run, not the file that it came from."""
+    return _pseudo_velocity(np.frombuffer(samples), dt, period, DAMPING)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _intensity(samples: bytes, dt: float) -> float:
     ground = np.frombuffer(samples)
+    found = [_pseudo_velocity(ground, dt, T, housner.DAMPING) for T in housner.PERIODS]
+    return housner.spectral_intensity(found)
+
+
+def _pseudo_velocity(
+    ground: np.ndarray[Any, Any], dt: float, period: float, damping: float
+) -> float:
+    """Ordinate of the pseudo-velocity spectrum, m/s; ``ground`` in m/s2."""
     frequency = 2.0 * math.pi / period
-    eigenvalue = spectrum._eigenvalue(frequency, DAMPING)
+    eigenvalue = spectrum._eigenvalue(frequency, damping)
     old, new = spectrum._load_weights(eigenvalue, dt)
     loads = np.zeros(ground.size, dtype=np.complex128)  # at rest at the first sample
     loads[1:] = -(old * ground[:-1] + new * ground[1:])
@@ -76,7 +107,7 @@ def _ordinate(samples: bytes, dt: float, period: float) -> float:
         grown = np.exp(eigenvalue * share * dt) * state[:-1]
         there = grown - old * ground[:-1] - new * between
         largest = max(largest, float(np.max(np.abs(there.imag))))
-    return frequency**2 * largest / (frequency * math.sqrt(1.0 - DAMPING**2))
+    return largest / math.sqrt(1.0 - damping**2)
 
 
 def recursion(growth: complex, loads: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

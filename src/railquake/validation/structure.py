@@ -33,7 +33,7 @@ def structure(column: Pier) -> Structure:
 
 
 def pier_matrices(column: Pier) -> tuple[Array, Array, Array, Array]:
-    """Diagonal of the mass, damping, stiffness without the hinge, and with it before it yields."""
+    """Diagonal of the mass, damping and stiffness without the hinge, stiffness before it yields."""
     made = structure(column)
     initial = made.stiffness + np.diag([0.0, made.parameters.k0, 0.0])
     return made.mass, made.damping, made.stiffness, initial
@@ -70,6 +70,7 @@ def march_pier(column: Pier, ground: Array, dt: float) -> Array:
     fill_substeps(q[:, 0], 1, layout)
     s = np.zeros((layout.size.STATE_ROWS, 1))
     s[layout.state_blocks["HINGE"], 0] = law.virgin
+    s[state.TANGENT] = made.parameters.k0
     laws = {**chosen({"hinge law": made.hinge}), **solving(made.hinge, False, False)}
     step = bind(move_structure_with_hinge, SCALAR, laws, layout).call
     rows = [getattr(state, name) for name in QUANTITIES.values()]

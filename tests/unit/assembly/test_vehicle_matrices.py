@@ -19,8 +19,9 @@ numbers = st.floats(-2.0, 2.0, allow_subnormal=False)
 
 def car(*bodies, springs, dashpots=()):
     return Vehicle(
-        name="test", bodies=bodies, springs=springs, dashpots=dashpots, axles=2, speed=20.0
-    )
+        name="test", bodies=bodies, springs=springs, dashpots=dashpots, axles=2, speed=20.0,
+        kinematics="linear",
+    )  # fmt: skip
 
 
 def two_bodies(**changes):

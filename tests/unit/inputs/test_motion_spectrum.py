@@ -1,5 +1,7 @@
 """Response spectra against closed forms and against the printed 2 x 2 recursion."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from railquake.inputs.ground_motion import (
     GroundMotion,
     oscillator_response,
     response_spectrum,
+    spectral_intensity,
     synthetic_motion,
 )
 
@@ -125,3 +128,12 @@ def test_bad_periods_are_refused(periods: list[float]) -> None:
 def test_bad_damping_is_refused(damping: float) -> None:
     with pytest.raises(InputError, match="damping"):
         response_spectrum(GroundMotion("m", 0.01, np.ones(5)), [1.0], damping)
+
+
+def test_spectral_intensity_of_a_jump_of_velocity_has_a_closed_form():
+    """The pseudo-velocity is the same at all periods: that of a free swing with that velocity."""
+    dt, jump, ratio = 1e-3, 0.4, 0.2
+    pulse = np.zeros(3000)
+    pulse[1] = jump / dt
+    expected = jump * math.exp(-ratio / math.sqrt(1.0 - ratio**2) * math.acos(ratio))
+    assert spectral_intensity(GroundMotion("jump", dt, pulse)) == pytest.approx(expected, rel=1e-3)

@@ -17,6 +17,11 @@ def test_the_shipped_sets():
     assert [(info.kind, info.name) for info in list_presets()] == [
         ("vehicle", "bart"),
         ("vehicle", "bart-2023-runs"),
+        ("vehicle", "bart-under-gravity"),
+        ("vehicle", "crh380a"),
+        ("vehicle", "hsr-generic"),
+        ("vehicle", "ice3-motor"),
+        ("vehicle", "manchester"),
         ("support", "bart-berkeley"),
         ("support", "bart-berkeley-2023-runs"),
         ("wheelrail", "bart"),

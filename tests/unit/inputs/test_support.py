@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from railquake.errors import InputError
+from railquake.inputs.identity import fingerprint
 from railquake.inputs.support import AtGrade, Pier, PrescribedTrack, read_track_motion
 
 
@@ -55,9 +56,24 @@ def test_bart_berkeley_2023_runs_differs_in_damping_only():
     assert runs.damping_ratio == 0.01
 
 
+def test_damping_is_of_the_column_unless_said_and_of_the_initial_stiffness_in_the_papers_study():
+    assert Pier.model_fields["damping_of"].default == "column"
+    for name in ("bart-berkeley", "bart-berkeley-2023-runs"):
+        assert Pier.from_preset(name).damping_of == "initial"
+
+
+def test_piers_damped_as_all_were_before_there_was_a_choice_keep_their_hash():
+    """Rows of older studies stay theirs; with another damping it is another pier."""
+    pier = Pier.from_preset("bart-berkeley")
+    column, tangent = (pier.model_copy(update={"damping_of": of}) for of in ("column", "tangent"))
+    assert "damping_of" not in fingerprint(pier)
+    assert len({fingerprint(one) for one in (pier, column, tangent)}) == 3
+
+
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
+        ({"damping_of": "colum"}, ["damping_of", "column", "initial", "tangent"]),
         ({"length": "7 s"}, ["length", "(a time)", "6.0 m"]),
         ({"length": 0}, ["length", "positive"]),
         ({"lenght": 7}, ["lenght", 'did you mean "length"']),

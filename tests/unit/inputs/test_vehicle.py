@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from railquake.errors import InputError
+from railquake.inputs.identity import fingerprint
+from railquake.inputs.presets import preset_names
 from railquake.inputs.vehicle import Body, Dashpot, Spring, Vehicle
 
 
@@ -154,3 +156,91 @@ def test_a_dashpot_may_have_no_damping_but_none_below():
 def test_inputs_are_frozen():
     with pytest.raises(ValueError, match="frozen"):
         BODIES[0].mass = 1.0
+
+
+# --- stops, anti-roll bars, kinematics ----------------------------------------------------------
+
+STOP = {"bodies": ["car", "bogie"], "direction": "lateral", "lateral": 0.0, "height": 0.77}
+GAP = {"gap": 0.03, "stiffness": 1e6}
+
+
+def with_stop(**values):
+    return Vehicle.from_preset("bart-under-gravity", {"stops": {"own": {**STOP, **values}}})
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"travel": [0.0, 0.02, 0.03], "force": [0.0, 900.0, 800.0]}, "must not fall: 900 N, then"),
+        ({"travel": [0.01, 0.02], "force": [0.0, 900.0]}, "must begin with no force at no travel"),
+        ({"travel": [0.0, 0.02], "force": [5.0, 900.0]}, "found 5 N at 0 m"),
+        ({"travel": [0.0, 0.02, 0.02], "force": [0.0, 1.0, 2.0]}, "must rise, found 0.02 m, then"),
+        ({"travel": [0.0, 0.02], "force": [0.0]}, r"needs as many values as travel \(2\), found 1"),
+        ({"travel": [0.0, 0.02, 0.03], "force": [0.0, 5.0, 5.0]}, "must rise at its end"),
+        ({}, "give either gap and stiffness, or travel and force; found neither"),
+        ({"gap": 0.03}, "stiffness: is needed beside gap"),
+        ({**GAP, "bodies": ["car", "car"]}, 'joins "car" to itself'),
+        ({**GAP, "bodies": ["car", "bogey"]}, 'did you mean "bogie"'),
+        ({**GAP, "height": 0.2}, "0.2 m lies below the axle, which is 0.391899 m above the rails"),
+    ],
+)
+def test_a_stop_that_makes_no_sense_is_refused_with_its_field(values, message):
+    with pytest.raises(InputError, match=message) as refused:
+        with_stop(**values)
+    assert "stops.own" in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_a_stop_is_a_gap_or_a_table_and_factors_stretch_it():
+    assert with_stop(**GAP).stops[-1].force_over_travel == ((0.0, 0.03, 1.03), (0.0, 0.0, 1e6))
+    stretched = with_stop(
+        travel=[0.0, 0.02, 0.03], force=[0.0, 100.0, 300.0], travel_factor=2.0, force_factor=0.5
+    ).stops[-1]
+    assert stretched.force_over_travel == ((0.0, 0.04, 0.06), (0.0, 50.0, 150.0))
+    assert stretched.longest == 0.06
+    assert with_stop(**GAP).stops[-1].longest is None
+
+
+@pytest.mark.parametrize("bodies", [["car", "car"], ["car", "roof"]])
+def test_an_anti_roll_bar_between_one_body_is_refused(bodies):
+    bar = {"bodies": bodies, "stiffness": 1e6}
+    with pytest.raises(InputError, match="anti_roll_bars.bar.bodies"):
+        Vehicle.from_preset("bart", {"anti_roll_bars": {"bar": bar}})
+
+
+@pytest.mark.parametrize(
+    ("what", "message"),
+    [
+        ({"stops": {"own": {**STOP, **GAP}}}, "stops.own: is a stop, which no linear car can have"),
+        (
+            {"dashpots": {"primary-lateral": {"knee": "0.1 m/s", "damping_beyond": 1e3}}},
+            "primary-lateral: has a knee, which no linear car can have",
+        ),
+    ],
+)
+def test_a_linear_car_has_no_stops_and_no_knees(what, message):
+    with pytest.raises(InputError, match=message):
+        Vehicle.from_preset("bart", what)
+
+
+def test_the_papers_cars_are_linear_and_others_are_not():
+    kinds = {name: Vehicle.from_preset(name).kinematics for name in preset_names("vehicle")}
+    linear = [name for name, kind in kinds.items() if kind == "linear"]
+    assert sorted(linear) == ["bart", "bart-2023-runs"]
+
+
+@pytest.mark.parametrize("name", ["crh380a", "hsr-generic", "ice3-motor", "manchester"])
+def test_a_published_car_says_where_it_is_from_and_how_far_to_trust_it(name):
+    vehicle = Vehicle.from_preset(name)
+    assert len(vehicle.source) > 40 and "Read in" in vehicle.note
+
+
+def test_a_linear_car_without_stops_is_told_apart_as_before_there_was_a_choice():
+    """Rows of older studies stay theirs; what is chosen is told apart."""
+    before = fingerprint(Vehicle.from_preset("bart"))
+    for new in ("kinematics", "stops", "anti_roll_bars", "knee", "damping_beyond"):
+        assert new not in before
+    knee = {"kinematics": "finite", "dashpots": {"primary-lateral": {"knee": "0.1 m/s"}}}
+    for changes in ({"kinematics": "finite"}, knee):
+        after = fingerprint(Vehicle.from_preset("bart", changes))
+        assert after != before and '"kinematics":"finite"' in after
+    assert '"knee":0.1' in fingerprint(Vehicle.from_preset("bart", knee))

@@ -7,11 +7,13 @@ import pytest
 
 import railquake as rq
 from railquake.inputs.ground_motion import GroundMotion
-from railquake.march.events import detect_events, release_train
+from railquake.march import sprung
+from railquake.march.events import detect_events
+from railquake.march.events import release_train as release
 from railquake.march.order import kernel_order
 from railquake.march.rows import constant, state
-from railquake.march.sprung import vehicle_energy
 from railquake.physics.derailment import FLANGE_CONTACT, UPLIFT
+from stages import stage
 
 NAMES = ("flange contact", "uplift", "onset", "flange over", "derailed", "overturned")
 STILL = GroundMotion("still", 0.01, np.zeros(3))
@@ -229,16 +231,16 @@ def test_vehicle_energy_is_that_of_its_matrices(system):
     v[order] = s[state.VEHICLE_V : state.VEHICLE_V + 9, 0]
     matrices = system.vehicle
     expected = 0.5 * (x @ matrices.stiffness @ x + v @ (matrices.mass * v))
-    assert vehicle_energy(s, system.constants, 0) == pytest.approx(expected)
+    assert stage(system, sprung.vehicle_energy)(s, system.constants, 0) == pytest.approx(expected)
 
 
 def test_release_takes_the_train_out_with_its_energy_on_record(system):
     s = moving(system)
-    energy = vehicle_energy(s, system.constants, 0)
+    energy = stage(system, sprung.vehicle_energy)(s, system.constants, 0)
     places = s[state.VEHICLE_X : state.VEHICLE_X + 9].copy()
     detect_events(s, system.constants, 0)
     assert s[state.LEAVING, 0] == 1.0
-    release_train(s, system.constants, 0)
+    stage(system, release)(s, system.constants, 0)
     assert s[state.VEHICLE_ENERGY, 0] == pytest.approx(energy)
     assert s[state.HERTZ_LEFT, 0] == 7.0
     assert s[state.ON_TRACK, 0] == 0.0
@@ -252,5 +254,5 @@ def test_release_leaves_a_train_that_stays_as_it_is(system):
     s = moving(system)
     s[state.LEAVING] = 0.0
     before = s.copy()
-    release_train(s, system.constants, 0)
+    stage(system, release)(s, system.constants, 0)
     assert np.all(s == before)

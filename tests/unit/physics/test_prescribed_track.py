@@ -31,7 +31,9 @@ ENDS = STEPS * DT * np.arange(4)
 
 def drive():
     track, rates = polynomials(ENDS), slopes(ENDS)
-    ground = np.array([[0.0, 8.0, 4.0, 6.0], [1.0, 3.0, -1.0, 0.0]])
+    lateral = np.array([0.0, 8.0, 4.0, 6.0])
+    velocity = 0.5 + STEPS * DT * np.array([0.0, 4.0, 10.0, 15.0])
+    ground = np.array([lateral, [1.0, 3.0, -1.0, 0.0], velocity])
     columns = [*ground, *(v for pair in zip(track, rates, strict=True) for v in pair)]
     return np.column_stack(columns)
 
@@ -49,8 +51,10 @@ def test_position_velocity_and_work_at_every_step(substeps):
     before = polynomials(0.0)
     for frame in range(3):
         stages[ground.begin_frame](s, q, drive(), frame, 0)
+        begun = drive()[frame, 2] + slopes(ENDS[frame])[0]
+        assert s[state.TRACK_V_BEGUN, 0] == pytest.approx(begun)
         for n in range(0, STEPS, substeps):
-            ground.move_ground(s, 0)
+            ground.move_ground(s, q, 0)
             stages[track.place_track](s, q, 0)
             t = DT * (frame * STEPS + n)
             assert s[state.TRACK_Y : state.TRACK_Y + 3, 0] == pytest.approx(before, abs=1e-12)
@@ -77,6 +81,8 @@ def test_position_velocity_and_work_at_every_step(substeps):
             # and the ground, linear within the frame
             lateral = np.interp(t, ENDS, drive()[:, 0])
             assert s[state.GROUND, 0] == pytest.approx(lateral)
+            if n + substeps == STEPS:
+                assert s[state.GROUND_V, 0] == pytest.approx(drive()[frame + 1, 2])
             assert s[state.GROUND_Z, 0] == pytest.approx(np.interp(t, ENDS, drive()[:, 1]))
 
 

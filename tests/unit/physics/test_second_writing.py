@@ -12,6 +12,8 @@ import railquake as rq
 from jolts import jolt
 from kalker import kalker_table
 from railquake.assembly.geometry import build_geometry
+from railquake.assembly.supports import structure_of
+from railquake.inputs.solver import Solver
 from railquake.physics import hertz, newmark, pier
 from railquake.physics.contact_table import (
     FIELDS,
@@ -208,16 +210,17 @@ def test_table_is_filled_row_by_row_with_tread_and_flange(geometry):
             assert held[i, j, 1] == pytest.approx(zone_contact(shift, roll, 0, flange, geometry))
 
 
-def test_column_and_its_damping():
+@pytest.mark.parametrize("damping_of", ["column", "initial"])
+def test_column_and_its_damping(damping_of):
     """Stiffness by slope and deflection; damping by two equations for a and b."""
-    support = jolt("to the right").support
-    mass, damping, stiffness = independent_model.column_matrices(support)
+    support = jolt("to the right", damping_of=damping_of).support
+    _, damping, stiffness = independent_model.column_matrices(support)
     found = pier.stiffness_matrix(
         support.youngs_modulus, support.second_moment_of_area, support.length, 0.0
     )
     assert found == pytest.approx(stiffness)
-    initial = found + np.diag([0.0, support.bouc_wen.k0, 0.0])
-    assert pier.rayleigh_damping(mass, initial, support.damping_ratio) == pytest.approx(damping)
+    made = structure_of(support, Solver(), 0.0)
+    assert made.damping + np.diag([0.0, made.hinge_damping.constant, 0.0]) == pytest.approx(damping)
 
 
 def test_newmarks_matrix():

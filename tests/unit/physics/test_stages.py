@@ -18,8 +18,10 @@ def system():
     return pushed("to the right", DT)
 
 
-def test_structure_keeps_its_energy_to_the_last_digits(system):
+@pytest.mark.parametrize("damping_of", ["column", "initial", "tangent"])
+def test_structure_keeps_its_energy_to_the_last_digits(damping_of):
     """Constant average acceleration with trapezoids: work in = kinetic + elastic + hinge + lost."""
+    system = pushed("to the right", DT, damping_of=damping_of)
     s, q = system.start.copy(), system.constants
     drawn = np.random.default_rng(2)
     k = q[constant.K : constant.K + 6, 0]
@@ -34,7 +36,10 @@ def test_structure_keeps_its_energy_to_the_last_digits(system):
     s[state.GROUND], s[state.GROUND_SLOPE] = 5.0, 0.7
     x, v = s[state.U : state.U + 3, 0].copy(), s[state.U_V : state.U_V + 3, 0].copy()
     node = np.array([s[state.NODE_U, 0], 0.0, s[state.NODE_THETA2, 0]])
-    load = node - np.array([q[constant.GROUND_LOAD, 0] * 5.0, s[state.MOMENT, 0], 0.0])
+    own, per_tangent = system.structure.hinge_damping
+    s[state.DAMPING_MOMENT] = (own + per_tangent * s[state.TANGENT, 0]) * v[1]
+    foot = s[state.MOMENT, 0] + s[state.DAMPING_MOMENT, 0]
+    load = node - np.array([q[constant.GROUND_LOAD, 0] * 5.0, foot, 0.0])
     s[state.U_A : state.U_A + 3, 0] = (load - stiffness @ x - damping @ v) / mass
 
     def energy():
@@ -43,7 +48,7 @@ def test_structure_keeps_its_energy_to_the_last_digits(system):
 
     begun, before, work = energy(), x, 0.0
     for _ in range(40):
-        move_ground(s, 0)
+        move_ground(s, q, 0)
         move_structure(s, q, 0)
         x = s[state.U : state.U + 3, 0].copy()
         work += node @ (x - before)
@@ -55,9 +60,35 @@ def test_structure_keeps_its_energy_to_the_last_digits(system):
     # and it is in balance at the end
     end = s[state.U_V : state.U_V + 3, 0], s[state.U_A : state.U_A + 3, 0]
     left = mass * end[1] + damping @ end[0] + stiffness @ x - node
-    left += (q[constant.GROUND_LOAD, 0] * s[state.GROUND, 0], s[state.MOMENT, 0], 0.0)
+    foot = s[state.MOMENT, 0] + s[state.DAMPING_MOMENT, 0]
+    left += (q[constant.GROUND_LOAD, 0] * s[state.GROUND, 0], foot, 0.0)
     assert np.abs(left).max() < 1e-6 * np.abs(stiffness @ x).max()
     assert s[state.UNCONVERGED, 0] == 0.0
+
+
+@pytest.mark.parametrize("tangent", [3e10, -2e9])
+def test_damping_of_the_tangent_takes_the_hinges_own_at_the_steps_begin(tangent):
+    """None where the hinge's moment falls as it turns: a dashpot never gives."""
+    system = pushed("to the right", DT, damping_of="tangent")
+    s, q = system.start.copy(), system.constants
+    s[state.TANGENT] = tangent
+    stage(system, structure.move_structure)(s, q, 0)
+    expected = system.structure.hinge_damping.per_tangent * max(tangent, 0.0)
+    assert s[state.DAMPING_MOMENT, 0] == pytest.approx(expected * s[state.THETA1_V, 0])
+    assert s[state.TANGENT, 0] not in (0.0, tangent)
+
+
+def test_an_elastic_hinge_is_damped_alike_by_its_initial_and_its_tangent_stiffness():
+    ends = []
+    for damping_of in ("initial", "tangent"):
+        system = pushed("to the left, elastic", DT, damping_of=damping_of)
+        s = system.start.copy()
+        s[state.GROUND] = 500.0
+        for _ in range(10):
+            stage(system, structure.move_structure)(s, system.constants, 0)
+        ends.append(s[:, 0])
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9, abs=1e-15)
+    assert abs(ends[0][state.DAMPING_MOMENT]) > 1e3
 
 
 def test_ground_and_gravity_work_on_the_steps_of_the_bodies(system):

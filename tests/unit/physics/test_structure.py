@@ -83,7 +83,8 @@ def test_periods_of_the_pier_with_an_elastic_hinge():
 def test_rayleigh_damping_has_its_ratio_in_both_modes(ratio):
     mass = np.array([M, 1.0, J])
     stiffness = pier.stiffness_matrix(E, SECOND, L, K0)
-    damping = pier.rayleigh_damping(mass, stiffness, ratio)
+    coefficients = pier.rayleigh_coefficients(mass, stiffness, ratio)
+    damping = pier.rayleigh_damping(mass, stiffness, *coefficients)
     root = 1.0 / np.sqrt(mass)
     values, vectors = np.linalg.eigh(stiffness * np.outer(root, root))
     for k in range(2):
@@ -100,6 +101,16 @@ def test_column_buckles_at_eulers_load():
     unit = -pier.geometric_stiffness(1.0, L)[free]
     lowest = np.linalg.eigvals(np.linalg.solve(unit, stiffness)).real.min()
     assert lowest == pytest.approx(euler, rel=0.008)
+
+
+def test_a_dashpot_beside_the_hinge_takes_its_share_of_the_step():
+    """dx = free - f (M + c (2 rate dx - v)), by hand; without a dashpot nothing changes."""
+    free, soft, rate, v, c, moment = 2e-4, 3e-9, 1e4, 0.7, 40.0, 5e4
+    assert newmark.beside_dashpot(free, soft, 0.0, v, rate) == (free, soft)
+    held, softness = newmark.beside_dashpot(free, soft, c, v, rate)
+    dx = held - softness * moment
+    velocity = newmark.new_velocity(dx, v, rate)
+    assert dx == pytest.approx(free - soft * (moment + c * velocity), rel=1e-12)
 
 
 def newmark_error(dt):

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from railquake.march.rows import PIER
+from railquake.physics.pier import HingeDamping
 from railquake.physics.track import Offset
 
 __all__ = ["Structure", "structure_of"]
@@ -24,6 +25,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 
 UNMOVED = Offset(0.0, 0.0, 0.0, 0.0)
+UNDAMPED = HingeDamping(0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Structure:
     mass : array, shape (N,)
         Diagonal, kg and kg m2.
     stiffness, damping : array, shape (N, N)
-        The hinge's stiffness apart.
+        The hinge's apart.
     ground_load : array, shape (N,)
         What the ground's acceleration acts on, kg; zeros where nothing moves.
     hinge : str
@@ -44,6 +46,8 @@ class Structure:
         Of that law.
     offset : Offset
         Of the track from the node that carries it.
+    hinge_damping : HingeDamping
+        Of the hinge itself.
     reaction : float
         1 if the train's forces act on the structure, else 0.
     degrees : (int, int, int, int)
@@ -61,6 +65,7 @@ class Structure:
     hinge: str
     parameters: Any
     offset: Offset = UNMOVED
+    hinge_damping: HingeDamping = UNDAMPED
     reaction: float = 0.0
     degrees: tuple[int, int, int, int] = PIER
     choice: str = "node"

@@ -29,7 +29,13 @@ def structure(support: Pier, solver: Solver, train_mass: float) -> Structure:
     )
     initial = column.copy()
     initial[1, 1] += parameters.k0
-    damping = pier.rayleigh_damping(mass, initial, support.damping_ratio)
+    a, b = pier.rayleigh_coefficients(mass, initial, support.damping_ratio)
+    damping = pier.rayleigh_damping(mass, column, a, b)
+    of_hinge = {
+        "column": pier.HingeDamping(0.0, 0.0),
+        "initial": pier.HingeDamping(b * parameters.k0, 0.0),
+        "tangent": pier.HingeDamping(0.0, b),
+    }
     if support.p_delta:
         weight = (support.mass + (train_mass if support.coupled else 0.0)) * GRAVITY
         column = column + pier.geometric_stiffness(weight, support.length)
@@ -41,5 +47,6 @@ def structure(support: Pier, solver: Solver, train_mass: float) -> Structure:
         hinge=support.hinge,
         parameters=parameters,
         offset=Offset(1.0, support.track_height, support.track_offset, 1.0),
+        hinge_damping=of_hinge[support.damping_of],
         reaction=1.0 if support.coupled else 0.0,
     )

@@ -79,7 +79,7 @@ class GroundMotion:
         Acceleration integrated by the trapezoid rule, with the least-squares straight line
         removed from the velocity.
         """
-        return float(np.max(np.abs(_without_line(self.velocity()))))
+        return float(np.max(np.abs(without_line(self.velocity()))))
 
     @cached_property
     def arias_intensity(self) -> float:
@@ -195,7 +195,7 @@ def cumulative_trapezoid(values: NDArray[np.float64], dt: float) -> NDArray[np.f
     return result
 
 
-def _without_line(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def without_line(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """`values` minus their least-squares straight line."""
     # Centred and scaled to [-1, 1], so that the slope and the mean decouple.
     place = np.linspace(-1.0, 1.0, values.size)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from railquake.errors import InputError
 from railquake.inputs.ground_motion.motion import GroundMotion
+from railquake.measures import housner
 
 POINTS_PER_PERIOD = 40
 """Peaks are looked for at least this often in each period (0.3 % below the true peak at most)."""
@@ -91,6 +92,12 @@ def response_spectrum(
     psa = frequency**2 * sd
     psa[wanted == 0.0] = motion.pga
     return ResponseSpectrum(wanted, float(damping_ratio), sd, frequency * sd, psa, sv, sa)
+
+
+def spectral_intensity(motion: GroundMotion) -> float:
+    """Housner's spectral intensity SI, 20 % damping, 0.1 to 2.5 s, m/s; see `measures.housner`."""
+    spectrum = response_spectrum(motion, housner.PERIODS, housner.DAMPING)
+    return housner.spectral_intensity(spectrum.psv.tolist())
 
 
 def oscillator_response(
