@@ -148,9 +148,8 @@ def _linear_matrices(vehicle: Vehicle, bodies: list[Body]) -> VehicleMatrices:
                 rows.append(roll_row(len(bodies), *(number[name] for name in bar.bodies)))
                 values.append(bar.stiffness)
         matrices.append(element_matrix(rows, values, 3 * len(bodies)))
-    return VehicleMatrices(
-        tuple(b.name for b in bodies), mass, matrices[0], matrices[1], matrices[1]
-    )
+    names = tuple(body.name for body in bodies)
+    return VehicleMatrices(names, mass, matrices[0], matrices[1], without_gravity=matrices[1])
 
 
 def bodies_of(vehicle: Vehicle) -> list[Body]:
