@@ -174,6 +174,8 @@ def sag_of(stiffness: Array, weight: Array) -> Array:
 def _with_gravity(linear: VehicleMatrices, vehicle: Vehicle, bodies: list[Body]) -> VehicleMatrices:
     """A car with finite rotations, linearised where it stands."""
     joints = joints_of(vehicle, bodies, sag_of(linear.stiffness, linear.weight))
+    if not joints.joined.elements:
+        return linear  # a body alone
     stiffness, damping = Suspension(linear.mass, joints).tangents()
     return replace(linear, joints=joints, stiffness=stiffness, damping=damping)
 

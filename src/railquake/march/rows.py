@@ -66,19 +66,13 @@ class Numbers:
 
 
 class Joined(NamedTuple):
-    """Which joints a car with finite rotations has; what they are like stands in the constants.
-
-    Attributes
-    ----------
-    elements : tuple of (str, int, int)
-        Kind ("spring", "lateral stop", "vertical knee", ...), upper and lower body; springs first,
-        then stops, then dashpots with a knee.
-    ramps : int
-        Most changes of stiffness of any stop.
-    """
+    """Which joints a car with finite rotations has; what they are like stands in the constants."""
 
     elements: tuple[tuple[str, int, int], ...]
+    """Kind ("spring", "lateral stop", "vertical knee", ...), upper and lower body; springs first,
+    then stops, then dashpots with a knee."""
     ramps: int
+    """Most changes of stiffness of any stop."""
 
     def count(self, family: str) -> int:
         """How many are a "spring", a "stop" or a "knee"."""
