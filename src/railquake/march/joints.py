@@ -16,11 +16,11 @@ from railquake.march.packing import reader
 from railquake.march.rows import Joined, constant, size, state
 from railquake.physics.elementary import sin_cos
 from railquake.physics.joint import (
+    JointSpring,
     Pose,
     Pull,
     Relative,
     Sides,
-    Spring,
     Tie,
     knee_force,
     pull,
@@ -37,7 +37,7 @@ __all__ = ["joined_laws"]
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 read_tie = reader(Tie)
-read_spring = reader(Spring)
+read_spring = reader(JointSpring)
 read_sides = reader(Sides)
 
 

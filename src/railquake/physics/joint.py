@@ -19,11 +19,11 @@ import math
 from typing import NamedTuple
 
 __all__ = [
+    "JointSpring",
     "Pose",
     "Pull",
     "Relative",
     "Sides",
-    "Spring",
     "Tie",
     "knee_force",
     "pull",
@@ -71,7 +71,7 @@ class Relative(NamedTuple):
     apart: tuple[float, float]  # P_u - P_l in mean axes, m
 
 
-class Spring(NamedTuple):
+class JointSpring(NamedTuple):
     """A joint's linear springs and dashpots, and what it bears at rest."""
 
     ky: float  # N/m
@@ -171,7 +171,7 @@ def turning(upper: Pose, lower: Pose) -> float:
     return upper.roll - lower.roll
 
 
-def spring_force(at: Relative, spring: Spring) -> tuple[tuple[float, float], float]:
+def spring_force(at: Relative, spring: JointSpring) -> tuple[tuple[float, float], float]:
     """Force on the upper body along the mean axes, N, and what the dashpots take, W."""
     damping_y = spring.cy * at.vy
     damping_z = spring.cz * at.vz
@@ -184,7 +184,7 @@ def spring_force(at: Relative, spring: Spring) -> tuple[tuple[float, float], flo
     )
 
 
-def spring_energy(at: Relative, theta: float, spring: Spring) -> float:
+def spring_energy(at: Relative, theta: float, spring: JointSpring) -> float:
     """V of the springs, J."""
     return (
         at.y * (spring.ny + 0.5 * spring.ky * at.y)

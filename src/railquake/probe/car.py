@@ -57,7 +57,8 @@ class Shaken:
 
     Attributes
     ----------
-    time : array, shape (n,)
+    times : array, shape (n,)
+        s.
     bodies : tuple of str
     displacements : array, shape (n, bodies, 3)
         y, z, m, and roll, rad.
@@ -65,7 +66,7 @@ class Shaken:
         What is left of the energy balance over all that came in.
     """
 
-    time: Array
+    times: Array
     bodies: tuple[str, ...]
     displacements: Array
     energy_residual: float
