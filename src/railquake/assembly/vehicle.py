@@ -188,7 +188,7 @@ def refuse_unstable(vehicle: VehicleMatrices) -> None:
     InputError
         Which mode it is, and what roll stiffness would hold it.
     """
-    if not vehicle.is_finite or len(vehicle.mass) == 3:
+    if not vehicle.is_finite:
         return
     frequencies, shapes = fixed_wheelset_modes(vehicle.mass, vehicle.stiffness)
     if frequencies[0] > 0.0:

@@ -30,8 +30,8 @@ __all__ = [
     "relative",
     "spring_energy",
     "spring_force",
+    "spring_moment",
     "stop_force",
-    "turning",
 ]
 
 
@@ -166,11 +166,6 @@ def pull(at: Relative, force: tuple[float, float], moment: float) -> Pull:
     )
 
 
-def turning(upper: Pose, lower: Pose) -> float:
-    """theta: roll of the upper body against the lower, rad."""
-    return upper.roll - lower.roll
-
-
 def spring_force(at: Relative, spring: JointSpring) -> tuple[tuple[float, float], float]:
     """Force on the upper body along the mean axes, N, and what the dashpots take, W."""
     damping_y = spring.cy * at.vy
@@ -182,6 +177,11 @@ def spring_force(at: Relative, spring: JointSpring) -> tuple[tuple[float, float]
         ),
         damping_y * at.vy + damping_z * at.vz,
     )
+
+
+def spring_moment(theta: float, spring: JointSpring) -> float:
+    """Moment of anti-roll bars on the upper body, N m, at its roll against the lower, rad."""
+    return -spring.nr - spring.kr * theta
 
 
 def spring_energy(at: Relative, theta: float, spring: JointSpring) -> float:
