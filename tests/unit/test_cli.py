@@ -150,6 +150,43 @@ def test_probe_hinge_writes_the_columns_of_the_contract(tmp_path, capsys):
     assert len(lines) == 4
 
 
+def test_probe_car_leans_a_car(capsys):
+    assert main(["probe", "car", "--vehicle", "manchester", "--lean", "2.0", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    # oracles/car_static_manchester.csv
+    assert found["car_y_m"] == pytest.approx(0.10189216, rel=1e-5)
+    assert found["bogie_roll_rad"] == pytest.approx(0.0121815729, rel=1e-5)
+    assert found["flexibility_coefficient"] == pytest.approx(0.1805, abs=1e-4)
+
+
+def test_probe_car_writes_a_history(tmp_path, capsys):
+    record = tmp_path / "a.csv"
+    rows = "\n".join(f"{0.01 * k:.2f},{0.5 if k % 40 < 20 else -0.5}" for k in range(101))
+    record.write_text("time [s],acceleration [m/s2]\n" + rows + "\n")
+    out = tmp_path / "h.csv"
+    arguments = ["--vehicle", "bart", "--motion", str(record), "--out", str(out)]
+    assert main(["probe", "car", *arguments]) == 0
+    header, *lines = out.read_text().splitlines()
+    assert header == ("t_s,car_y_m,car_z_m,car_roll_rad,bogie_y_m,bogie_z_m,bogie_roll_rad")
+    assert len(lines) == 1001 and lines[0] == "0.000" + ",0" * 6
+    # thrown back at first: 0.5 m/s2 for 0.1 s
+    assert float(lines[100].split(",")[1]) == pytest.approx(-0.5 * 0.5 * 0.1**2, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "give either --lean, m/s2, or --motion"),
+        (["--lean", "1", "--motion", "a.csv"], "give either --lean, m/s2, or --motion"),
+        (["--vehicle", "manchester", "--lean", "300"], "the car falls over; take less"),
+        (["--lean", "nan"], "--lean: must be a finite number of m/s2"),
+        (["--vehicle", "barth", "--lean", "1"], 'did you mean "bart"'),
+    ],
+)
+def test_probe_car_refuses_in_one_line(capsys, arguments, said):
+    assert said in refused(capsys, "probe", "car", *arguments)
+
+
 def test_probe_contact_gives_a_row_a_patch(capsys):
     arguments = ["--preset", "s1002-60e1", "--shift", "0.0", "--load", "50e3", "--json"]
     assert main(["probe", "contact", *arguments]) == 0

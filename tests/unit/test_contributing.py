@@ -24,7 +24,7 @@ BLOCKS = [
 # What a block says beside its path: where it stands in a file that is there.
 BEFORE = {
     "inputs/vehicle.py": "class Vehicle(FromPreset)",
-    "assembly/vehicle.py": "    return VehicleMatrices(tuple",
+    "assembly/vehicle.py": "    return VehicleMatrices(names",
     "inputs/support.py": "Support = Annotated[",
     "measures/__init__.py": '    Measure(\n        "flange_clearance_peak_m"',
     "march/peaks.py": "    raise_peak(S, state.PEAK_LOAD",

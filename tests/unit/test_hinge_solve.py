@@ -10,8 +10,6 @@ from railquake.march.compiler import PYTHON
 from railquake.physics.hinge import bouc_wen
 from railquake.run import many
 
-pytestmark = pytest.mark.xdist_group("hinge solve")  # what is made once is made in one process
-
 TIMINGS = ("wall_s", "steps_per_s", "versions")
 YIELDING = {"seed": 3, "duration": "3 s", "pga": "1 g", "highpass_frequency": "0.6 Hz"}
 

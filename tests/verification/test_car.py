@@ -83,11 +83,11 @@ def test_the_manchester_car_is_shaken_as_the_reference(shared):
     time, lateral = manchester_motion()
     found = shake_held(car("manchester"), time, lateral, np.zeros(len(time)))
     at = np.array([float(row["t_s"]) for row in reference])
-    assert at[-1] <= found.time[-1]
+    assert at[-1] <= found.times[-1]
     for k, name in enumerate(list(reference[0])[1:]):
         expected = np.array([float(row[name]) for row in reference])
-        history = found.displacements.reshape(len(found.time), -1)[:, k]
-        off = np.abs(np.interp(at, found.time, history) - expected).max()
+        history = found.displacements.reshape(len(found.times), -1)[:, k]
+        off = np.abs(np.interp(at, found.times, history) - expected).max()
         assert off < 1e-3 * np.abs(expected).max(), name
     assert abs(found.energy_residual) < 1e-6
 

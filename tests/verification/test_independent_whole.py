@@ -10,8 +10,6 @@ from jolts import JOLTS, STORED, WHEELS, jolt, measured, push
 from kalker import kalker_table
 from railquake.inputs.ground_motion import GroundMotion
 
-pytestmark = pytest.mark.xdist_group("second writing")  # what is made once is made in one process
-
 DURATION = 0.9
 STEPS = (4e-5, 2e-5, 1e-5)
 FINER = 4  # samples of the second writing in a millisecond

@@ -14,7 +14,7 @@ from railquake.march.rows import UNJOINED, Joined, layout_of
 from railquake.march.slots import joining
 from railquake.march.step import find_free_accelerations, find_vehicle_energy
 from railquake.physics.hinge import HINGE_LAWS
-from railquake.physics.joint import Sides, Spring, Tie
+from railquake.physics.joint import JointSpring, Sides, Tie
 
 if TYPE_CHECKING:
     from railquake.inputs.vehicle import AntiRollBar, Stop, Vehicle
@@ -25,7 +25,7 @@ __all__ = ["NO_JOINTS", "Joints", "Suspension", "fill_joints", "joints_of"]
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 STEP = 1e-5  # m, rad and per s: of the differences that give tangents
-NO_SPRING = Spring(*[0.0] * len(Spring._fields))
+NO_SPRING = JointSpring(*[0.0] * len(JointSpring._fields))
 
 
 class _Place(NamedTuple):
@@ -48,7 +48,7 @@ class Joints:
     ties : tuple of Tie
         Of each element.
     gaps : tuple of (float, float)
-    springs : tuple of Spring
+    springs : tuple of JointSpring
     sides : tuple of Sides
         Of each stop.
     ramps : tuple of array, shape (n, 2)
@@ -63,7 +63,7 @@ class Joints:
     joined: Joined
     ties: tuple[Tie, ...]
     gaps: tuple[tuple[float, float], ...]
-    springs: tuple[Spring, ...]
+    springs: tuple[JointSpring, ...]
     sides: tuple[Sides, ...]
     ramps: tuple[Array, ...]
     ends: tuple[float, ...]
@@ -206,9 +206,9 @@ def _places(element: Any, number: dict[str, int]) -> Iterator[tuple[_Place, floa
         yield _Place(upper, lower, side * element.lateral, *element.end_heights), side
 
 
-def _springs(vehicle: Vehicle, number: dict[str, int]) -> dict[_Place, Spring]:
+def _springs(vehicle: Vehicle, number: dict[str, int]) -> dict[_Place, JointSpring]:
     """Springs, dashpots without a knee and anti-roll bars, added up where they share a place."""
-    found: dict[_Place, Spring] = {}
+    found: dict[_Place, JointSpring] = {}
 
     def add(place: _Place, field: str, value: float) -> None:
         there = found.get(place, NO_SPRING)
@@ -227,7 +227,7 @@ def _springs(vehicle: Vehicle, number: dict[str, int]) -> dict[_Place, Spring]:
 
 
 def _place_of_bar(
-    bar: AntiRollBar, number: dict[str, int], found: dict[_Place, Spring], vehicle: Vehicle
+    bar: AntiRollBar, number: dict[str, int], found: dict[_Place, JointSpring], vehicle: Vehicle
 ) -> _Place:
     """A bar is felt anywhere between its bodies: with a spring that is there, if there is one."""
     upper, lower = (number[name] for name in bar.bodies)
@@ -238,7 +238,7 @@ def _place_of_bar(
     return _Place(upper, lower, 0.0, height, height)
 
 
-def _loaded(spring: Spring, place: _Place, bodies: list[Any], sag: Array) -> Spring:
+def _loaded(spring: JointSpring, place: _Place, bodies: list[Any], sag: Array) -> JointSpring:
     """With what it bears at rest."""
     upper, lower = (sag[3 * k : 3 * k + 3] for k in (place.upper, place.lower))
     upper_z = bodies[place.upper].height - place.upper_height

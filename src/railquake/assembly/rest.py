@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from railquake.assembly.supports import Structure
     from railquake.assembly.vehicle import VehicleMatrices
 
-__all__ = ["Equilibrium", "LoadedHinge", "Rest", "find_rest", "loaded_hinge"]
+__all__ = ["Equilibrium", "LoadedHinge", "Rest", "find_rest", "loaded_hinge", "newton_root"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -149,7 +149,7 @@ def find_rest(of: Equilibrium) -> Rest:
     start[n - 3 + count] = 0.0
     for _ in range(50):
         scaled = _Unknowns(of, weight, sag, secant)
-        solved = _newton(scaled.residual, start)
+        solved = newton_root(scaled.residual, start)
         if solved is None:
             raise InputError(
                 "no equilibrium of the standing train was found: wheel and rail may not meet "
@@ -204,7 +204,7 @@ class _Unknowns:
         return out / self.weight.sum()
 
 
-def _newton(residual: Callable[[Array], Array], start: Array) -> Array | None:
+def newton_root(residual: Callable[[Array], Array], start: Array) -> Array | None:
     """Root of a smooth system by Newton's method with halved steps; None if it does not converge.
 
     General root finders take difference steps that are far too long for an indentation of some

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from railquake.assembly.constants import static_wheel_load
+from railquake.assembly.vehicle import bodies_of
 from railquake.march.compiler import PYTHON, bind
 from railquake.march.order import kernel_order
 from railquake.march.slots import chosen
@@ -120,7 +121,7 @@ def settlement(geometry: Geometry, scenario: Scenario, load: float) -> float:
 def carried_car(track: Array, scenario: Scenario) -> Array:
     """Displacements of the bodies when the undeformed car is carried with the track."""
     y, z, roll = track
-    bodies = sorted(scenario.vehicle.bodies, key=lambda b: b.name == scenario.vehicle.wheelset)
+    bodies = bodies_of(scenario.vehicle)
     moved = np.zeros(3 * len(bodies))
     for i, body in enumerate(bodies):
         moved[3 * i : 3 * i + 3] = (y + body.height * roll, z, roll)

@@ -148,9 +148,8 @@ def _linear_matrices(vehicle: Vehicle, bodies: list[Body]) -> VehicleMatrices:
                 rows.append(roll_row(len(bodies), *(number[name] for name in bar.bodies)))
                 values.append(bar.stiffness)
         matrices.append(element_matrix(rows, values, 3 * len(bodies)))
-    return VehicleMatrices(
-        tuple(b.name for b in bodies), mass, matrices[0], matrices[1], matrices[1]
-    )
+    names = tuple(body.name for body in bodies)
+    return VehicleMatrices(names, mass, matrices[0], matrices[1], without_gravity=matrices[1])
 
 
 def bodies_of(vehicle: Vehicle) -> list[Body]:
@@ -175,6 +174,8 @@ def sag_of(stiffness: Array, weight: Array) -> Array:
 def _with_gravity(linear: VehicleMatrices, vehicle: Vehicle, bodies: list[Body]) -> VehicleMatrices:
     """A car with finite rotations, linearised where it stands."""
     joints = joints_of(vehicle, bodies, sag_of(linear.stiffness, linear.weight))
+    if not joints.joined.elements:
+        return linear  # a body alone
     stiffness, damping = Suspension(linear.mass, joints).tangents()
     return replace(linear, joints=joints, stiffness=stiffness, damping=damping)
 
@@ -187,7 +188,7 @@ def refuse_unstable(vehicle: VehicleMatrices) -> None:
     InputError
         Which mode it is, and what roll stiffness would hold it.
     """
-    if not vehicle.is_finite or len(vehicle.mass) == 3:
+    if not vehicle.is_finite:
         return
     frequencies, shapes = fixed_wheelset_modes(vehicle.mass, vehicle.stiffness)
     if frequencies[0] > 0.0:

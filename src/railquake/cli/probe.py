@@ -212,13 +212,13 @@ def _shake_car(
     ground = read_motion(record, allow_high_pga=high)
     lateral = scale * ground.acceleration
     found = shake_held(car, ground.time, lateral, np.zeros(len(lateral)))
-    moved = found.displacements.reshape(len(found.time), -1)
+    moved = found.displacements.reshape(len(found.times), -1)
     columns = _columns(found.bodies)
     if out is not None or not as_json:
         lines = [",".join(("t_s", *columns))]
         lines += [
             f"{t:.3f}," + ",".join(f"{value:.9g}" for value in row)
-            for t, row in zip(found.time, moved, strict=True)
+            for t, row in zip(found.times, moved, strict=True)
         ]
         if out is None:
             typer.echo("\n".join(lines))

@@ -76,8 +76,7 @@ class _Element(InputModel):
 
     @model_validator(mode="after")
     def _joins_two_points(self) -> _Element:
-        if self.bodies[0] == self.bodies[1]:
-            raise inconsistent(f'joins "{self.bodies[0]}" to itself; name two bodies', "bodies")
+        _refuse_one_body(self.bodies)
         if (self.height is None) == (self.heights is None):
             found = "found neither" if self.height is None else "found both"
             raise inconsistent(
@@ -234,8 +233,7 @@ class AntiRollBar(InputModel):
 
     @model_validator(mode="after")
     def _joins_two_bodies(self) -> AntiRollBar:
-        if self.bodies[0] == self.bodies[1]:
-            raise inconsistent(f'joins "{self.bodies[0]}" to itself; name two bodies', "bodies")
+        _refuse_one_body(self.bodies)
         return self
 
 
@@ -387,6 +385,11 @@ class Vehicle(FromPreset):
     def mass(self) -> float:
         """Mass of all bodies together [kg]."""
         return sum(body.mass for body in self.bodies)
+
+
+def _refuse_one_body(bodies: tuple[str, str]) -> None:
+    if bodies[0] == bodies[1]:
+        raise inconsistent(f'joins "{bodies[0]}" to itself; name two bodies', "bodies")
 
 
 def _refuse_repeats(key: str, names: list[str]) -> None:

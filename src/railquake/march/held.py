@@ -12,7 +12,7 @@ __all__ = ["march_held"]
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 
-def march_held(S: Array, Q: Array, drive: Array, rows: Array, history: Array) -> None:
+def march_held(S: Array, Q: Array, drive: Array, channels: Array, history: Array) -> None:
     """Run a car whose wheelset is held fast.
 
     Parameters
@@ -21,14 +21,14 @@ def march_held(S: Array, Q: Array, drive: Array, rows: Array, history: Array) ->
         Rows of `rows_state` and `rows_constant`.
     drive : array, shape (frames + 1, 2)
         Ground acceleration, right and down, at the frames' ends, m/s2.
-    rows : array of int
-        Rows of the state to keep.
-    history : array, shape (frames + 1, len(rows))
+    channels : array, shape (n,)
+        Numbers of the rows of the state to keep.
+    history : array, shape (frames + 1, n)
         Filled in; its first row is the state at the start.
     """
     steps = int(Q[constant.FRAME_STEPS, 0])
-    for channel in range(len(rows)):
-        history[0, channel] = S[rows[channel], 0]
+    for channel in range(len(channels)):
+        history[0, channel] = S[channels[channel], 0]
     for frame in range(len(drive) - 1):
         for n in range(1, steps + 1):
             place = n / steps
@@ -44,5 +44,5 @@ def march_held(S: Array, Q: Array, drive: Array, rows: Array, history: Array) ->
             work_on_bodies(S, Q, 0)
             accelerate_free(S, Q, 1)
             lose_to_dashpots(S, Q, 0)
-        for channel in range(len(rows)):
-            history[frame + 1, channel] = S[rows[channel], 0]
+        for channel in range(len(channels)):
+            history[frame + 1, channel] = S[channels[channel], 0]

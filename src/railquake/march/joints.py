@@ -16,19 +16,19 @@ from railquake.march.packing import reader
 from railquake.march.rows import Joined, constant, size, state
 from railquake.physics.elementary import sin_cos
 from railquake.physics.joint import (
+    JointSpring,
     Pose,
     Pull,
     Relative,
     Sides,
-    Spring,
     Tie,
     knee_force,
     pull,
     relative,
     spring_energy,
     spring_force,
+    spring_moment,
     stop_force,
-    turning,
 )
 from railquake.physics.vehicle import free_acceleration
 
@@ -37,7 +37,7 @@ __all__ = ["joined_laws"]
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 read_tie = reader(Tie)
-read_spring = reader(Spring)
+read_spring = reader(JointSpring)
 read_sides = reader(Sides)
 
 
@@ -119,6 +119,14 @@ def felt(S: Array, Q: Array, element: int, upper: int, lower: int, lane: int) ->
     )
 
 
+def twist(S: Array, upper: int, lower: int, lane: int) -> float:
+    """theta: roll of the upper body against the lower, rad."""
+    theta: float = (
+        S[state.VEHICLE_X + 2 * upper + 1, lane] - S[state.VEHICLE_X + 2 * lower + 1, lane]
+    )
+    return theta
+
+
 def pull_spring(
     S: Array, Q: Array, element: int, number: int, upper: int, lower: int, lane: int
 ) -> None:
@@ -126,9 +134,9 @@ def pull_spring(
     at = felt(S, Q, element, upper, lower, lane)
     spring = read_spring(Q, constant.SPRINGS + size.SPRING_FIELDS * number, lane)
     force, lost = spring_force(at, spring)
-    theta = S[state.VEHICLE_X + 2 * upper + 1, lane] - S[state.VEHICLE_X + 2 * lower + 1, lane]
+    moment = spring_moment(twist(S, upper, lower, lane), spring)
     S[state.DASHPOT_POWER, lane] += lost
-    add_pull(S, upper, lower, pull(at, force, -spring.nr - spring.kr * theta), lane)
+    add_pull(S, upper, lower, pull(at, force, moment), lane)
 
 
 def stored_in_spring(
@@ -137,8 +145,7 @@ def stored_in_spring(
     """Energy of `pull_spring`, J."""
     at = felt(S, Q, element, upper, lower, lane)
     spring = read_spring(Q, constant.SPRINGS + size.SPRING_FIELDS * number, lane)
-    theta = turning(pose_of(S, upper, lane), pose_of(S, lower, lane))
-    return spring_energy(at, theta, spring)
+    return spring_energy(at, twist(S, upper, lower, lane), spring)
 
 
 def pushed_by(Q: Array, number: int, travel: float, lane: int) -> float:

@@ -24,7 +24,7 @@ from railquake.march.rows_constant import CONSTANT_ROWS
 from railquake.march.rows_state import PATCHES, STATE_ROWS
 from railquake.physics.contact_table import Polynomials
 from railquake.physics.hinge import HINGE_LAWS
-from railquake.physics.joint import Sides, Spring, Tie
+from railquake.physics.joint import JointSpring, Sides, Tie
 
 if TYPE_CHECKING:
     from railquake.physics.hinge import HingeLaw
@@ -66,19 +66,13 @@ class Numbers:
 
 
 class Joined(NamedTuple):
-    """Which joints a car with finite rotations has; what they are like stands in the constants.
-
-    Attributes
-    ----------
-    elements : tuple of (str, int, int)
-        Kind ("spring", "lateral stop", "vertical knee", ...), upper and lower body; springs first,
-        then stops, then dashpots with a knee.
-    ramps : int
-        Most changes of stiffness of any stop.
-    """
+    """Which joints a car with finite rotations has; what they are like stands in the constants."""
 
     elements: tuple[tuple[str, int, int], ...]
+    """Kind ("spring", "lateral stop", "vertical knee", ...), upper and lower body; springs first,
+    then stops, then dashpots with a knee."""
     ramps: int
+    """Most changes of stiffness of any stop."""
 
     def count(self, family: str) -> int:
         """How many are a "spring", a "stop" or a "knee"."""
@@ -217,11 +211,11 @@ def _joined_sizes(joined: Joined, bodies: int) -> dict[str, int]:
         "STOPS": stops,
         "RAMPS": joined.ramps,
         "TIE_FIELDS": len(Tie._fields),
-        "SPRING_FIELDS": len(Spring._fields),
+        "SPRING_FIELDS": len(JointSpring._fields),
         "SIDES_FIELDS": len(Sides._fields),
         "TIE_ROWS": len(Tie._fields) * elements,
         "GAP_ROWS": 2 * elements,
-        "SPRING_ROWS": len(Spring._fields) * joined.count("spring"),
+        "SPRING_ROWS": len(JointSpring._fields) * joined.count("spring"),
         "SIDES_ROWS": len(Sides._fields) * stops,
         "RAMP_ROWS": joined.ramps * stops,
         "KNEE_ROWS": 3 * joined.count("knee"),

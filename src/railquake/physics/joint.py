@@ -19,19 +19,19 @@ import math
 from typing import NamedTuple
 
 __all__ = [
+    "JointSpring",
     "Pose",
     "Pull",
     "Relative",
     "Sides",
-    "Spring",
     "Tie",
     "knee_force",
     "pull",
     "relative",
     "spring_energy",
     "spring_force",
+    "spring_moment",
     "stop_force",
-    "turning",
 ]
 
 
@@ -71,7 +71,7 @@ class Relative(NamedTuple):
     apart: tuple[float, float]  # P_u - P_l in mean axes, m
 
 
-class Spring(NamedTuple):
+class JointSpring(NamedTuple):
     """A joint's linear springs and dashpots, and what it bears at rest."""
 
     ky: float  # N/m
@@ -166,12 +166,7 @@ def pull(at: Relative, force: tuple[float, float], moment: float) -> Pull:
     )
 
 
-def turning(upper: Pose, lower: Pose) -> float:
-    """theta: roll of the upper body against the lower, rad."""
-    return upper.roll - lower.roll
-
-
-def spring_force(at: Relative, spring: Spring) -> tuple[tuple[float, float], float]:
+def spring_force(at: Relative, spring: JointSpring) -> tuple[tuple[float, float], float]:
     """Force on the upper body along the mean axes, N, and what the dashpots take, W."""
     damping_y = spring.cy * at.vy
     damping_z = spring.cz * at.vz
@@ -184,7 +179,12 @@ def spring_force(at: Relative, spring: Spring) -> tuple[tuple[float, float], flo
     )
 
 
-def spring_energy(at: Relative, theta: float, spring: Spring) -> float:
+def spring_moment(theta: float, spring: JointSpring) -> float:
+    """Moment of anti-roll bars on the upper body, N m, at its roll against the lower, rad."""
+    return -spring.nr - spring.kr * theta
+
+
+def spring_energy(at: Relative, theta: float, spring: JointSpring) -> float:
     """V of the springs, J."""
     return (
         at.y * (spring.ny + 0.5 * spring.ky * at.y)

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.assembly import held_car, refuse_unstable, vehicle_matrices
+from railquake.assembly import (
+    VehicleMatrices,
+    held_car,
+    newton_root,
+    refuse_unstable,
+    vehicle_matrices,
+)
 from railquake.errors import InputError
 from railquake.march.compiler import SCALAR
 from railquake.march.held import march_held
@@ -24,7 +30,6 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 FRAME = 1e-3  # s, between two rows of a history
 STEP = 1e-5  # s
-TOLERANCE = 1e-12  # of the weight, out of balance
 
 
 @dataclass(frozen=True)
@@ -52,7 +57,8 @@ class Shaken:
 
     Attributes
     ----------
-    time : array, shape (n,)
+    times : array, shape (n,)
+        s.
     bodies : tuple of str
     displacements : array, shape (n, bodies, 3)
         y, z, m, and roll, rad.
@@ -60,7 +66,7 @@ class Shaken:
         What is left of the energy balance over all that came in.
     """
 
-    time: Array
+    times: Array
     bodies: tuple[str, ...]
     displacements: Array
     energy_residual: float
@@ -100,40 +106,23 @@ def lean(vehicle: Vehicle, acceleration: float) -> Lean:
     return Lean(names, moved, coefficient)
 
 
-def _balance(matrices: Any, load: Array, free: int) -> Array:
-    """Displacements of the free bodies under ``load``, by Newton's method with halved steps."""
-    x = np.zeros(len(load))
-    scale = matrices.weight.sum()
+def _balance(matrices: VehicleMatrices, load: Array, free: int) -> Array:
+    """Displacements of the free bodies under ``load``."""
+    held = np.zeros(3)
 
-    def residual(at: Array) -> Array:
-        found: Array = (matrices.held_by(at) - load)[:free] / scale
-        return found
+    def residual(moved: Array) -> Array:
+        """Out of balance, over the weight; ``moved`` in mm and mrad."""
+        there = np.concatenate([1e-3 * moved, held])
+        out: Array = (matrices.held_by(there) - load)[:free] / matrices.weight.sum()
+        return out
 
-    found = residual(x)
-    for _ in range(200):
-        if np.abs(found).max() < TOLERANCE:
-            return x[:free]
-        jacobian = np.empty((free, free))
-        for k in range(free):
-            unit = np.zeros(len(x))
-            unit[k] = 1e-7
-            jacobian[:, k] = (residual(x + unit) - residual(x - unit)) / 2e-7
-        full = np.zeros(len(x))
-        full[:free] = -np.linalg.solve(jacobian, found)
-        share = 1.0
-        while share > 1e-6:
-            tried = residual(x + share * full)
-            if np.linalg.norm(tried) < np.linalg.norm(found):
-                break
-            share *= 0.5
-        else:
-            break
-        x, found = x + share * full, tried
-    if np.abs(found).max() < 1e-9:
-        return x[:free]
-    raise InputError(
-        "--lean: no equilibrium was found under that acceleration: the car falls over; take less"
-    )
+    found = newton_root(residual, np.zeros(free))
+    if found is None:
+        raise InputError(
+            "--lean: no equilibrium was found under that acceleration: the car falls over; take "
+            "less"
+        )
+    return 1e-3 * found
 
 
 def shake_held(vehicle: Vehicle, time: Array, lateral: Array, vertical: Array) -> Shaken:

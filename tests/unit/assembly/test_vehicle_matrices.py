@@ -154,3 +154,11 @@ def test_how_a_car_splits_does_not_depend_on_its_units():
 def test_a_body_on_no_springs_swings_at_no_frequency():
     frequencies, _ = fixed_wheelset_modes(np.ones(6), np.zeros((6, 6)))
     assert frequencies.tolist() == [0.0, 0.0, 0.0]
+
+
+def test_a_body_alone_has_no_joints_whatever_its_kinematics():
+    block = Body(name="wheelset", mass=1000.0, roll_inertia=400.0, height=2.0)
+    alone = Vehicle(name="block", bodies=(block,), axles=1, speed=0.0)
+    matrices = vehicle_matrices(alone)
+    assert alone.kinematics == "finite"
+    assert (matrices.kinematics, matrices.stiffness.any()) == ("linear", False)

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from railquake.physics.joint import (
+    JointSpring,
     Pose,
     Sides,
-    Spring,
     Tie,
     knee_force,
     pull,
@@ -20,7 +20,7 @@ from railquake.physics.joint import (
     stop_force,
 )
 
-SPRING = Spring(3e5, 8e5, 2e6, 6e4, 4e4, 100.0, -1.5e5, 300.0)
+SPRING = JointSpring(3e5, 8e5, 2e6, 6e4, 4e4, 100.0, -1.5e5, 300.0)
 TIE = Tie(1.0, 0.97, 1.0, -0.23)
 GAP = (0.0, 0.1)
 

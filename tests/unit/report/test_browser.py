@@ -5,8 +5,6 @@ import shutil
 
 import pytest
 
-pytestmark = pytest.mark.xdist_group("browser")  # what is made once is made in one process
-
 WIDTHS = (1200, 420)
 
 
