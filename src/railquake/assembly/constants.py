@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from railquake.assembly.geometry import ROLL_AXIS, SHIFT_AXIS
+from railquake.assembly.geometry import DISPLACEMENT_AXIS, ROLL_AXIS, running_circle
 from railquake.assembly.joints import fill_joints
 from railquake.errors import InputError
 from railquake.inputs.profile import flange_tip
@@ -107,7 +107,8 @@ def _fill_wheelrail(q: Array, wheelrail: WheelRail, speed: float, layout: Layout
     q[constant.ONSET_BOUND] = wheelrail.onset_rate_bound
     q[constant.FRICTION] = wheelrail.friction
     q[constant.INVERSE_SPEED] = 1.0 / max(speed, wheelrail.speed_bound)
-    q[blocks["SHIFT_AXIS"]] = axis_cells(SHIFT_AXIS)
+    q[blocks["RUNNING_CIRCLE"]] = running_circle(wheelrail)
+    q[blocks["DISPLACEMENT_AXIS"]] = axis_cells(DISPLACEMENT_AXIS)
     q[blocks["ROLL_AXIS"]] = axis_cells(ROLL_AXIS)
     tip_y, tip_z = flange_tip(wheelrail.wheel_profile())
     rail = wheelrail.rail_profile()

@@ -14,7 +14,7 @@ from railquake.files import whole_file
 from railquake.laws import CREEP_LAWS
 from railquake.march.compiler import SCALAR, bind, cache_folder, source_hash
 from railquake.memory import Bounded
-from railquake.physics.contact_table import FIELDS, Axis, axis_nodes, fill_table
+from railquake.physics.contact_table import FIELDS, Axis, RunningCircle, axis_nodes, fill_table
 from railquake.physics.hertz import hertz_table
 from railquake.physics.profiles import Geometry
 
@@ -22,7 +22,15 @@ if TYPE_CHECKING:
     from railquake.inputs.profile import Profile
     from railquake.inputs.wheelrail import WheelRail
 
-__all__ = ["FLOOR", "ROLL_AXIS", "SHIFT_AXIS", "build_geometry", "law_table", "with_table"]
+__all__ = [
+    "DISPLACEMENT_AXIS",
+    "FLOOR",
+    "ROLL_AXIS",
+    "build_geometry",
+    "law_table",
+    "running_circle",
+    "with_table",
+]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -33,8 +41,8 @@ FLOOR = 0.15  # depth below the crown at which the ground beside a rail is put, 
 STEEPEST = 40.0  # slope with which a rail's faces are carried on below the drawn head
 
 # Fine where a wheel runs, coarse where it has left the rail; see the accuracy in the docs.
-SHIFT_AXIS = Axis(fine=0.014, fine_step=0.1e-3, coarse_step=1.0e-3, end=0.130)
-ROLL_AXIS = Axis(fine=0.030, fine_step=0.5e-3, coarse_step=5.0e-3, end=0.800)
+DISPLACEMENT_AXIS = Axis(fine=0.016, fine_step=0.1e-3, coarse_step=1.0e-3, end=0.130)
+ROLL_AXIS = Axis(fine=0.030, fine_step=0.5e-3, coarse_step=5.0e-3, end=1.050)
 
 
 def build_geometry(wheelrail: WheelRail) -> Geometry:
@@ -85,7 +93,7 @@ def build_geometry(wheelrail: WheelRail) -> Geometry:
         hertz.spin,
         np.log(hertz.a_over_b),
         np.zeros(1),
-        len(axis_nodes(SHIFT_AXIS)),
+        len(axis_nodes(DISPLACEMENT_AXIS)),
         *(
             law_table(law, wheelrail.poisson_ratio)
             for law in (wheelrail.creep_law, wheelrail.flange_creep_law)
@@ -144,7 +152,12 @@ def _rail_grid(rail: Profile, centre: float) -> tuple[float, Array, Array, Array
     return centre + low, height, slope, curvature
 
 
-def with_table(geometry: Geometry) -> Geometry:
+def running_circle(wheelrail: WheelRail) -> RunningCircle:
+    """Where the pair's wheels roll as drawn."""
+    return RunningCircle(wheelrail.running_circle, wheelrail.rolling_radius)
+
+
+def with_table(geometry: Geometry, circle: RunningCircle) -> Geometry:
     """The geometry with its contact table, from the cache on disk or made now by the grid method.
 
     The cache's key is the content of the arrays, the table's axes and the physics' source.
@@ -152,9 +165,9 @@ def with_table(geometry: Geometry) -> Geometry:
     digest = hashlib.sha256(source_hash().encode())
     for part in geometry:
         digest.update(np.ascontiguousarray(part).tobytes())
-    digest.update(repr((SHIFT_AXIS, ROLL_AXIS, FIELDS)).encode())
+    digest.update(repr((DISPLACEMENT_AXIS, ROLL_AXIS, FIELDS, circle)).encode())
     key = digest.hexdigest()
-    return geometry._replace(table=_TABLES.get(key, lambda: _table(key, geometry)))
+    return geometry._replace(table=_TABLES.get(key, lambda: _table(key, geometry, circle)))
 
 
 def law_table(name: str, poisson: float) -> Array:
@@ -179,14 +192,14 @@ def law_table(name: str, poisson: float) -> Array:
 _TABLES: Bounded[str, Array] = Bounded(12)
 
 
-def _table(digest: str, geometry: Geometry) -> Array:
+def _table(digest: str, geometry: Geometry, circle: RunningCircle) -> Array:
     """The contact table from the cache on disk, or made now and kept there."""
-    shifts, rolls = axis_nodes(SHIFT_AXIS), axis_nodes(ROLL_AXIS)
+    displacements, rolls = axis_nodes(DISPLACEMENT_AXIS), axis_nodes(ROLL_AXIS)
 
     def fill(table: Array) -> None:
-        bind(fill_table, SCALAR).call(shifts, rolls, geometry, table)
+        bind(fill_table, SCALAR).call(displacements, rolls, circle, geometry, table)
 
-    return _kept(digest, len(shifts) * len(rolls) * 2 * FIELDS, fill)
+    return _kept(digest, len(displacements) * len(rolls) * 2 * FIELDS, fill)
 
 
 def _kept(digest: str, size: int, fill: Callable[[Array], None]) -> Array:

@@ -17,7 +17,7 @@ from railquake.assembly.constants import (
     frame_steps,
     static_wheel_load,
 )
-from railquake.assembly.geometry import build_geometry, with_table
+from railquake.assembly.geometry import build_geometry, running_circle, with_table
 from railquake.assembly.rest import Equilibrium, find_rest
 from railquake.assembly.start import (
     blank_state,
@@ -268,7 +268,7 @@ def _assemble_at_rest(scenario: Scenario) -> _AtRest:
     }
     geometry = build_geometry(scenario.wheelrail)
     if solver.contact == "table":
-        geometry = with_table(geometry)
+        geometry = with_table(geometry, running_circle(scenario.wheelrail))
     constants = constants_of(scenario, vehicle, structure, layout)
     load = static_wheel_load(vehicle)
 

@@ -14,9 +14,12 @@ from railquake.physics.contact_table import (
     FIELDS,
     AxisCells,
     Polynomials,
+    RunningCircle,
+    RunningPoint,
     axis_cell,
     cell_polynomials,
     patch_in_cell,
+    running_point,
 )
 from railquake.physics.patch import Contact, WheelMotion, closing_rate, patch_forces
 from railquake.physics.profiles import POSITIVE, Geometry, Patch, zone_contact
@@ -27,6 +30,7 @@ __all__ = [
     "bearing_flanges",
     "clear_forces",
     "closed_patch",
+    "displacement",
     "evaluated_patch",
     "every_flange",
     "every_flange_near",
@@ -52,6 +56,7 @@ SPARE = 1e-4  # m
 KINDS = len(POWERS)
 
 read_axis = reader(AxisCells)
+read_circle = reader(RunningCircle)
 read_contact = reader(Contact)
 read_polynomials = reader(Polynomials)
 write_polynomials = writer(Polynomials)
@@ -60,8 +65,8 @@ write_polynomials = writer(Polynomials)
 # --- where they may touch -----------------------------------------------------------------------
 
 
-def locate_cells(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
-    """Slot of the contact method: the contact table's cell for each side's (shift, roll)."""
+def locate_cells(S: Array, Q: Array, displacement_nodes: int, lane: int) -> None:
+    """Slot of the contact method: the contact table's cell for each side."""
     raise NotImplementedError("a contact method is chosen when a kernel is bound")
 
 
@@ -75,7 +80,7 @@ def patch(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, lane: in
     raise NotImplementedError("a contact method is chosen when a kernel is bound")
 
 
-def no_cells(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
+def no_cells(S: Array, Q: Array, displacement_nodes: int, lane: int) -> None:
     """No table is used."""
 
 
@@ -93,32 +98,40 @@ def patch_by_grid(S: Array, Q: Array, geometry: Geometry, side: int, zone: int, 
     )
 
 
-def locate_in_table(S: Array, Q: Array, shift_nodes: int, lane: int) -> None:
-    """The axes are symmetric, so the left side's cell is the mirror image of the right one's."""
-    shifts = read_axis(Q, constant.SHIFT_AXIS, lane)
+def locate_in_table(S: Array, Q: Array, displacement_nodes: int, lane: int) -> None:
+    """Each side by its own displacement; the left side's roll is the mirror image."""
     rolls = read_axis(Q, constant.ROLL_AXIS, lane)
-    j, w, rate = axis_cell(S[state.SHIFT, lane], shifts)
-    last_j = 2.0 * shifts.coarse_cells + shifts.inner_cells - 1.0
     i, w_roll, roll_rate = axis_cell(S[state.ROLL, lane], rolls)
     last_i = 2.0 * rolls.coarse_cells + rolls.inner_cells - 1.0
-    left = ((last_i - i) * shift_nodes + last_j - j) * (2 * FIELDS)
-    right = (i * shift_nodes + j) * (2 * FIELDS)
-    keep_cell(S, 0, left, (1.0 - w, rate), (1.0 - w_roll, roll_rate), lane)
-    keep_cell(S, 1, right, (w, rate), (w_roll, roll_rate), lane)
+    first_of_roll = (last_i - i) * displacement_nodes, i * displacement_nodes
+    place_of_roll = 1.0 - w_roll, w_roll
+    for side in range(2):
+        j, w, rate = axis_cell(
+            displacement(S, Q, side, lane), read_axis(Q, constant.DISPLACEMENT_AXIS, lane)
+        )
+        S[state.CELL_BASE + side, lane] = (first_of_roll[side] + j) * (2 * FIELDS)
+        S[state.CELL_DISPLACEMENT + side, lane] = w
+        S[state.CELL_DISPLACEMENT_RATE + side, lane] = rate
+        S[state.CELL_ROLL + side, lane] = place_of_roll[side]
+        S[state.CELL_ROLL_RATE + side, lane] = roll_rate
 
 
-def keep_cell(
-    S: Array,
-    side: int,
-    base: float,
-    shift: tuple[float, float],
-    roll: tuple[float, float],
-    lane: int,
-) -> None:
-    """A side's cell: its first number in the table; place and cells per unit along both axes."""
-    S[state.CELL_BASE + side, lane] = base
-    S[state.CELL_SHIFT + side, lane], S[state.CELL_SHIFT_RATE + side, lane] = shift
-    S[state.CELL_ROLL + side, lane], S[state.CELL_ROLL_RATE + side, lane] = roll
+def point_of_side(S: Array, Q: Array, side: int, lane: int) -> RunningPoint:
+    """A wheel's running point seen from its own side."""
+    sign = 2.0 * side - 1.0
+    return running_point(
+        sign * S[state.ROLL_SIN, lane],
+        S[state.ROLL_COS, lane],
+        read_circle(Q, constant.RUNNING_CIRCLE, lane),
+    )
+
+
+def displacement(S: Array, Q: Array, side: int, lane: int) -> float:
+    """Of a wheel on its rail, u, outward, m."""
+    sign = 2.0 * side - 1.0
+    reach = point_of_side(S, Q, side, lane).reach
+    u: float = sign * S[state.SHIFT, lane] + reach - Q[constant.HALF_SPACING, lane]
+    return u
 
 
 def fetch_polynomials(S: Array, Q: Array, geometry: Geometry, lane: int) -> None:
@@ -132,9 +145,9 @@ def fetch_side(S: Array, geometry: Geometry, side: int, lane: int) -> None:
     base = S[state.CELL_BASE + side, lane]
     if base != S[state.CELL_HELD + side, lane]:
         S[state.CELL_HELD + side, lane] = base
-        width = 1.0 / S[state.CELL_SHIFT_RATE + side, lane]
+        width = 1.0 / S[state.CELL_DISPLACEMENT_RATE + side, lane]
         roll_width = 1.0 / S[state.CELL_ROLL_RATE + side, lane]
-        next_roll = (geometry.shift_nodes * 2 * FIELDS) & POSITIVE
+        next_roll = (geometry.displacement_nodes * 2 * FIELDS) & POSITIVE
         for zone in range(2):
             corner = (int(base) & POSITIVE) + zone * FIELDS
             made = cell_polynomials(corner, next_roll, width, roll_width, geometry.table)
@@ -152,10 +165,9 @@ def patch_by_table(
     """From the polynomials of the wheel's cell."""
     return patch_in_cell(
         read_polynomials(S, polynomials_of(side, zone), lane),
-        S[state.CELL_SHIFT + side, lane],
-        S[state.CELL_ROLL + side, lane],
-        S[state.CELL_SHIFT_RATE + side, lane],
-        S[state.CELL_ROLL_RATE + side, lane],
+        (S[state.CELL_DISPLACEMENT + side, lane], S[state.CELL_ROLL + side, lane]),
+        (S[state.CELL_DISPLACEMENT_RATE + side, lane], S[state.CELL_ROLL_RATE + side, lane]),
+        point_of_side(S, Q, side, lane),
     )
 
 

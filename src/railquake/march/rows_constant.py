@@ -68,9 +68,17 @@ _CONTACT = (
         ),
     ),
     block(
-        "SHIFT_AXIS",
+        "RUNNING_CIRCLE",
+        "of the contact table (`contact_table.RunningCircle`)",
+        (
+            ("HALF_SPACING", "m", "half the contact spacing as drawn"),
+            ("NOMINAL_RADIUS", "m", "of the wheels"),
+        ),
+    ),
+    block(
+        "DISPLACEMENT_AXIS",
         "of the contact table (`contact_table.AxisCells`)",
-        [(f"SHIFT_{name}", "m or 1/m", meaning) for name, meaning in _AXIS],
+        [(f"DISPLACEMENT_{name}", "m or 1/m", meaning) for name, meaning in _AXIS],
     ),
     block(
         "ROLL_AXIS",

@@ -115,12 +115,12 @@ _WHEELSET = (
     row("AXLE_DAMPING", "N m s", "how much that moment falls per axle's rate"),
 )  # fmt: skip
 
-# the contact table's cell of each side (left, right); the axes are symmetric
+# the contact table's cell of each side (left, right); the axis of the roll is symmetric
 _CELLS = (
     row("CELL_BASE", "1", "first number of the cell in the table", rows=2),
-    row("CELL_SHIFT", "1", "place within the cell along the shift, 0 to 1", rows=2),
-    row("CELL_SHIFT_RATE", "1/m", "cells per metre", rows=2),
-    row("CELL_ROLL", "1", "place within the cell along the roll, 0 to 1", rows=2),
+    row("CELL_DISPLACEMENT", "1", "place within the cell along the displacement", rows=2),
+    row("CELL_DISPLACEMENT_RATE", "1/m", "cells per metre", rows=2),
+    row("CELL_ROLL", "1", "place within the cell along the roll", rows=2),
     row("CELL_ROLL_RATE", "1/rad", "cells per radian", rows=2),
     row("CELL_HELD", "1", "the cell whose polynomials are at hand; -1: none", rows=2),
     row("POLYNOMIALS", "SI", "`contact_table.Polynomials` of each patch", rows="POLYNOMIAL_ROWS"),

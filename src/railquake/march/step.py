@@ -122,7 +122,7 @@ def predict_contact(S: Array, Q: Array, geometry: Geometry, lanes: int) -> None:
         predict_wheelset(S, Q, lane)
         place_wheelset(S, Q, lane)
     for lane in range(lanes):
-        locate_cells(S, Q, geometry.shift_nodes, lane)
+        locate_cells(S, Q, geometry.displacement_nodes, lane)
     for lane in range(lanes):
         fetch_cells(S, Q, geometry, lane)
 
@@ -165,7 +165,7 @@ def find_contact_forces(S: Array, Q: Array, geometry: Geometry) -> None:
     """The contact stages of `step` alone, for one scenario at rest or held."""
     orient_track(S, 0)
     place_wheelset(S, Q, 0)
-    locate_cells(S, Q, geometry.shift_nodes, 0)
+    locate_cells(S, Q, geometry.displacement_nodes, 0)
     fetch_cells(S, Q, geometry, 0)
     clear_forces(S, 0)
     for side in range(2):

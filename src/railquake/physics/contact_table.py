@@ -1,12 +1,28 @@
-"""The grid method's results in a table over shift and roll, and what is read from it.
+"""The grid method's results in a table over a wheel's displacement and roll, and how it is read.
 
 For given lateral shift Y and roll psi of the wheelset the place of each zone's smallest gap, its
 angle and curvatures do not depend on the height (see `profiles`), so they are found once, by the
 grid method, at the nodes of a table: fine where a wheel runs, coarse where it has left the rail.
-Within a cell the gap is a cubic in both, made from the nodes' G, dG/dY and dG/dpsi, and its
-derivatives are those of this very interpolation: the normal force remains the gradient of the gap.
+
+A wheel that bears while the other is lifted stays on its rail though the wheelset's centre moves
+far to the side, so the table is one over the wheel's *own* displacement u on its rail, and the
+roll.  With b half the contact spacing and r0 the nominal radius, the running circle's lowest point
+lies from the wheelset's centre at ::
+
+    reach = b cos(psi) - r0 sin(psi)          drop = b sin(psi) + r0 cos(psi)
+
+    u = Y + reach - b          H(u, psi) = G(Y, psi) + drop
+
+H, the gap but for how the wheelset's roll lifts and lowers that point, changes little with psi.
+Within a cell H is a cubic in both, made from the nodes' H, dH/du and dH/dpsi.  With d drop/d psi =
+reach and d reach/d psi = -drop ::
+
+    dG/dY = dH/du          dG/dpsi = dH/dpsi - drop dH/du - reach
+
+are the derivatives of this very interpolation: the normal force remains the gradient of the gap.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,12 +41,15 @@ __all__ = [
     "Axis",
     "AxisCells",
     "Polynomials",
+    "RunningCircle",
+    "RunningPoint",
     "axis_cell",
     "axis_cells",
     "axis_nodes",
     "cell_polynomials",
     "fill_table",
     "patch_in_cell",
+    "running_point",
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -99,11 +118,31 @@ def axis_cell(x: float, axis: AxisCells) -> tuple[float, float, float]:
     return first + cell, place - cell, rate
 
 
-class Polynomials(NamedTuple):
-    """One zone's polynomials within a cell, in the places w (shift) and w_roll of 0 to 1.
+class RunningCircle(NamedTuple):
+    """Where a wheel of the table rolls as drawn."""
 
-    The gap is a polynomial of w_roll whose coefficients are polynomials of w: ``gap_ij`` goes with
-    w_roll^i w^j.  The rest is bilinear, ``(1, w, w_roll, w w_roll)``.
+    half_spacing: float  # b, half the contact spacing, m
+    radius: float  # r0, m
+
+
+class RunningPoint(NamedTuple):
+    """The running circle's lowest point as drawn, from the wheelset's centre in track axes, m."""
+
+    reach: float  # outward
+    drop: float  # down
+
+
+def running_point(sine: float, cosine: float, circle: RunningCircle) -> RunningPoint:
+    """Of a right-hand wheel whose wheelset has turned by an angle of that sine and cosine."""
+    b, r0 = circle.half_spacing, circle.radius
+    return RunningPoint(b * cosine - r0 * sine, b * sine + r0 * cosine)
+
+
+class Polynomials(NamedTuple):
+    """One zone's polynomials within a cell, in the places w (displacement) and w_roll of 0 to 1.
+
+    The gap H is a polynomial of w_roll whose coefficients are polynomials of w: ``gap_ij`` goes
+    with w_roll^i w^j.  The rest is bilinear, ``(1, w, w_roll, w w_roll)``.
     """
 
     gap_00: float
@@ -154,15 +193,15 @@ def cell_polynomials(
     Parameters
     ----------
     corner : int
-        First number in the table of the zone at the cell's corner of least shift and roll.
+        First number in the table of the zone at the cell's corner of least displacement and roll.
     next_roll : int
-        Numbers from there to the corner of the same shift and the next roll.
+        Numbers from there to the corner of the same displacement and the next roll.
     width, roll_width : float
         Of the cell, m and rad.
     table : array
         See `fill_table`.
     """
-    # corners: (shift, roll) = (low, low), (high, low), (low, high), (high, high)
+    # corners: (displacement, roll) = (low, low), (high, low), (low, high), (high, high)
     c00 = corner
     c10 = c00 + 2 * FIELDS
     c01 = c00 + next_roll
@@ -212,10 +251,10 @@ def blend(w: float, w_roll: float, c0: float, c1: float, c2: float, c3: float) -
 
 
 def gap_in_cell(cell: Polynomials, w: float, w_roll: float) -> tuple[float, float, float]:
-    """Gap G within a cell and its derivatives by the places ``w`` (shift) and ``w_roll``.
+    """Gap H within a cell and its derivatives by the places ``w`` and ``w_roll``.
 
-    Cubic (Hermite) in the shift from the corners' G and dG/dY, then in the roll from these and
-    dG/dpsi, the last linear in the shift.
+    Cubic (Hermite) in the displacement from the corners' H and dH/du, then in the roll from these
+    and dH/dpsi, the last linear in the displacement.
     """
     q0, r0 = cubic(w, cell.gap_00, cell.gap_01, cell.gap_02, cell.gap_03)
     r1 = cell.gap_11
@@ -227,17 +266,27 @@ def gap_in_cell(cell: Polynomials, w: float, w_roll: float) -> tuple[float, floa
 
 
 def patch_in_cell(
-    cell: Polynomials, w: float, w_roll: float, rate: float, roll_rate: float
+    cell: Polynomials, place: tuple[float, float], rates: tuple[float, float], point: RunningPoint
 ) -> Patch:
     """What `profiles.zone_contact` gives, from the polynomials of the wheel's cell.
 
-    ``rate`` and ``roll_rate`` are the cells per metre and per radian.
+    Parameters
+    ----------
+    cell : Polynomials
+    place : (float, float)
+        Within the cell along displacement and roll, 0 to 1.
+    rates : (float, float)
+        Cells per metre and per radian.
+    point : RunningPoint
     """
-    gap, slope, gap_psi = gap_in_cell(cell, w, w_roll)
+    w, w_roll = place
+    rate, roll_rate = rates
+    gap, gap_w, gap_w_roll = gap_in_cell(cell, w, w_roll)
+    slope = gap_w * rate
     return Patch(
-        gap,
-        slope * rate,
-        gap_psi * roll_rate,
+        gap - point.drop,
+        slope,
+        gap_w_roll * roll_rate - point.drop * slope - point.reach,
         blend(w, w_roll, cell.rail_z, cell.rail_z_1, cell.rail_z_2, cell.rail_z_3),
         blend(w, w_roll, cell.stiffness, cell.stiffness_1, cell.stiffness_2, cell.stiffness_3),
         blend(w, w_roll, cell.along, cell.along_1, cell.along_2, cell.along_3),
@@ -247,19 +296,23 @@ def patch_in_cell(
     )
 
 
-def fill_table(shifts: Array, rolls: Array, geometry: Geometry, table: Array) -> None:
-    """Fill ``table`` (one row per roll and shift, shifts fastest) by the grid method."""
+def fill_table(
+    displacements: Array, rolls: Array, circle: RunningCircle, geometry: Geometry, table: Array
+) -> None:
+    """Fill ``table`` (one row per roll and displacement, these fastest) by the grid method."""
     for i in range(len(rolls)):
-        for j in range(len(shifts)):
-            base = (i * len(shifts) + j) * 2 * FIELDS
+        reach, drop = running_point(math.sin(rolls[i]), math.cos(rolls[i]), circle)
+        for j in range(len(displacements)):
+            shift = displacements[j] - reach + circle.half_spacing
+            base = (i * len(displacements) + j) * 2 * FIELDS
             for zone in range(2):
                 first = geometry.flange_points if zone == 0 else 0
                 last = len(geometry.wheel_y) if zone == 0 else geometry.flange_points
-                found = zone_contact(shifts[j], rolls[i], first, last, geometry)
+                found = zone_contact(shift, rolls[i], first, last, geometry)
                 place = base + zone * FIELDS
-                table[place] = found.gap
+                table[place] = found.gap + drop
                 table[place + 1] = found.slope
-                table[place + 2] = found.gap_psi
+                table[place + 2] = found.gap_psi + found.slope * drop + reach
                 table[place + 3] = found.rail_z
                 table[place + 4] = found.stiffness
                 table[place + 5] = found.along

@@ -57,8 +57,8 @@ class Geometry(NamedTuple):
     lateral place, height below the axle, their derivatives by the point's number, curvature
     (convex positive).  Points before ``flange_points`` belong to the flange zone.  ``rail_*`` are
     evenly spaced by ``rail_step`` from ``rail_start`` in track axes; ``rail_slope`` is dz/dy.
-    ``table`` is that of `contact_table`, with ``shift_nodes`` nodes of the shift; ``tread_law`` and
-    ``flange_law`` are those of the creep laws.
+    ``table`` is that of `contact_table`, with ``displacement_nodes`` nodes of a wheel's own
+    displacement; ``tread_law`` and ``flange_law`` are those of the creep laws.
     """
 
     wheel_y: Array
@@ -79,7 +79,7 @@ class Geometry(NamedTuple):
     hertz_spin: Array
     hertz_log_ratio: Array
     table: Array
-    shift_nodes: int
+    displacement_nodes: int
     tread_law: Array
     flange_law: Array
 

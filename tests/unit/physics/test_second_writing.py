@@ -18,6 +18,7 @@ from railquake.physics import hertz, newmark, pier
 from railquake.physics.contact_table import (
     FIELDS,
     Axis,
+    RunningCircle,
     axis_cell,
     axis_cells,
     axis_nodes,
@@ -197,17 +198,33 @@ def test_beyond_the_axis_a_place_is_held_at_its_end(x, end):
 
 
 def test_table_is_filled_row_by_row_with_tread_and_flange(geometry):
-    """A few nodes, one by one."""
-    shifts, rolls = np.array([-0.001, 0.002, 0.0085]), np.array([-0.003, 0.001])
-    table = np.full(len(shifts) * len(rolls) * 2 * FIELDS, math.nan)
-    fill_table(shifts, rolls, geometry, table)
-    held = table.reshape(len(rolls), len(shifts), 2, FIELDS)
+    """A few nodes, one by one; the gap and its derivatives by the point that the wheel turns about.
+
+    That point (b, r0) of the wheelset stays where it is when the wheelset rolls by phi: its shift
+    is then u + b - (b cos phi - r0 sin phi), its height less by b sin phi + r0 cos phi.
+    """
+    b, r0 = 0.872, 0.392
+    displacements, rolls = np.array([-0.001, 0.002, 0.0085]), np.array([-0.003, 0.001, 0.4])
+    table = np.full(len(displacements) * len(rolls) * 2 * FIELDS, math.nan)
+    fill_table(displacements, rolls, RunningCircle(b, r0), geometry, table)
+    held = table.reshape(len(rolls), len(displacements), 2, FIELDS)
     count, flange = len(geometry.wheel_y), geometry.flange_points
+    h = 1e-6
+
+    def gap(u, roll, first, last):
+        shift = u + b - (b * math.cos(roll) - r0 * math.sin(roll))
+        found = zone_contact(shift, roll, first, last, geometry)
+        return found.gap + b * math.sin(roll) + r0 * math.cos(roll), found
+
     for i, roll in enumerate(rolls):
-        for j, shift in enumerate(shifts):
-            tread = zone_contact(shift, roll, flange, count, geometry)
-            assert held[i, j, 0] == pytest.approx(tread)
-            assert held[i, j, 1] == pytest.approx(zone_contact(shift, roll, 0, flange, geometry))
+        for j, u in enumerate(displacements):
+            for zone, limits in enumerate([(flange, count), (0, flange)]):
+                rise, found = gap(u, roll, *limits)
+                by_roll = (gap(u, roll + h, *limits)[0] - gap(u, roll - h, *limits)[0]) / (2.0 * h)
+                assert held[i, j, zone, 0] == pytest.approx(rise)
+                assert held[i, j, zone, 1] == found.slope
+                assert held[i, j, zone, 2] == pytest.approx(by_roll, abs=1e-5)
+                assert held[i, j, zone, 3:] == pytest.approx(found[3:])
 
 
 @pytest.mark.parametrize("damping_of", ["column", "initial"])
