@@ -271,6 +271,7 @@ def fill_joints(q: Array, joints: Joints, layout: Layout) -> None:
     q[blocks["GAPS"]] = np.array(joints.gaps).ravel()
     q[blocks["SPRINGS"]] = np.array(joints.springs).ravel()
     q[blocks["STOP_SIDES"]] = np.array(joints.sides).ravel()
+    q[blocks["STOP_END"]] = joints.ends
     q[blocks["KNEES"]] = np.array(joints.knees).ravel()
     padded = np.zeros((len(joints.ramps), ramps, 2))
     for number, ramp in enumerate(joints.ramps):

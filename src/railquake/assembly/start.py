@@ -58,6 +58,7 @@ def blank_state(vehicle: VehicleMatrices, Q: Array, layout: Layout) -> Array:
     S[state.LOWEST_LOAD] = static_wheel_load(vehicle)
     S[state.PEAK_CLEARANCE] = -1.0
     S[layout.state_blocks["FIRST_TIME"]] = -1.0
+    S[state.DERAILED_TIME] = S[state.LEFT_TIME] = S[state.BEYOND_TIME] = -1.0
     S[state.UPLIFT_END] = -1.0
     return S
 

@@ -206,6 +206,10 @@ class WheelRail(FromPreset):
     reference_roll: Annotated[
         PositiveAngle, Field(description="Relative roll at which slide-off begins [rad]")
     ]
+    slide_off_limit: Annotated[
+        PositiveLength,
+        Field(lt=0.13, description="Displacement of a bearing wheel that counts as derailed [m]"),
+    ] = 0.070
 
     @model_validator(mode="after")
     def _fits_together(self) -> WheelRail:

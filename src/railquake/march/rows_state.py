@@ -279,7 +279,15 @@ _FRAME = (
     row("UPLIFTS", "1", "number of times that uplift began"),
     row("UPLIFT_END", "s", "when uplift last ended; negative: never"),
     row("LEAVING", "1", "1 at the frame at which the vehicle leaves the model"),
+    row("LEFT_TIME", "s", "when it left the model; negative: it did not"),
     row("FIRST_TIME", "s", "when each event first held; negative: never", rows=len(EVENTS)),
+    row("FIRST_SIDE", "1", "to which side it did; -1 left, 1 right", rows=len(EVENTS)),
+    row("FIRST_DISPLACEMENT", "m", "where the bearing wheel was, right", rows=len(EVENTS)),
+    row("FIRST_ROLL", "rad", "the relative roll at that time", rows=len(EVENTS)),
+    row("DERAILED_TIME", "s", "when it derailed, however; negative: it did not"),
+    row("PASSED_CROWN", "1", "how each side's flange came over (`passed_crown`)", rows=2),
+    row("BEYOND_TIME", "s", "when it came to where the model ends; negative: never"),
+    row("BEYOND_REASON", "1", "why, `derailment.BEYOND` from 1"),
 )
 
 # a cubic of the place within the frame for y, z and phi

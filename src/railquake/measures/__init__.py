@@ -35,21 +35,33 @@ MEASURES: tuple[Measure, ...] = (
     Measure(
         "status", Kind.OUTCOME, "", "status", "status",
         value=str,
-        meaning="`safe`; `onset`: the reference roll was reached, the train stayed; `derailed`; "
-        "`diverged`: a state left every plausible bound, the run was stopped; `not converged`: "
+        meaning="`safe`; `onset`: a lifted flange came above its rail, the train stayed; "
+        "`derailed`; `diverged`: a state left every plausible bound, the run was stopped; `not converged`: "
         "the hinge's iteration failed in some step",
         place=AttributeOf("status"),
     ),
     Measure(
         "derailed", Kind.OUTCOME, "", "derailed", "whether the train derailed",
-        value=bool, meaning="`true` if the train left the track, by sliding off or by overturning",
+        value=bool, meaning="`true` if the train left its rails, by whatever mode",
         place=WorkedOut("derailed"),
     ),
     Measure(
         "derailment_mode", Kind.OUTCOME, "", "mode", "how the train derailed",
         value=str, optional=True,
-        meaning="`slide-off left`, `slide-off right`, `overturned left`, `overturned right`",
+        meaning="`slide-off`, `climb`, `overturned` or `combined`, `left` or `right`; see below",
         place=AttributeOf("derailment_mode"),
+    ),
+    Measure(
+        "beyond_model", Kind.OUTCOME, "", "beyond the model", "why the car’s model ends",
+        value=str, optional=True,
+        meaning="the first reason: a linear car whose centre of gravity is beyond the rail, or a "
+        "bump stop past the end of its table; what follows is not to be believed, and it is no "
+        "derailment",
+        place=AttributeOf("beyond_model"),
+    ),
+    Measure(
+        "sequence", Kind.OUTCOME, "", "sequence", "what happened to the train",
+        value=str, meaning="in sentences, as `response.explain()`", place=WorkedOut("sequence"),
     ),
     # --- the ground
     Measure(
@@ -230,7 +242,8 @@ MEASURES: tuple[Measure, ...] = (
     ),
     Measure(
         "uplifts", Kind.TRAIN, "1", "uplifts", "number of uplifts",
-        value=int, meaning="number of times that uplift began (seen at frames)",
+        value=int, meaning="number of times that uplift began, not counted again within 50 ms of "
+        "its last end",
         place=StateRow("UPLIFTS"),
     ),
     # --- when
@@ -249,21 +262,33 @@ MEASURES: tuple[Measure, ...] = (
     ),
     Measure(
         "onset_first_s", Kind.TIME, "s", "onset", "first onset of slide-off",
-        optional=True, meaning="the relative roll was at the reference roll",
+        optional=True, meaning="the flange's tip of a lifted wheel was above its rail's crown",
         place=EventTime("ONSET"),
     ),
     Measure(
         "flange_over_first_s", Kind.TIME, "s", "flange over", "first flange over its rail",
-        optional=True, meaning="a flange tip was above its rail's crown",
+        optional=True, meaning="a flange tip was above its rail's crown, lifted or loaded",
         place=EventTime("FLANGE_OVER"),
     ),
     Measure(
         "derailed_s", Kind.TIME, "s", "derailment", "derailment",
-        optional=True, meaning="`derailed`, see below", place=EventTime("DERAILED"),
+        optional=True, meaning="derailment by whatever mode", place=StateTime("DERAILED_TIME"),
+    ),
+    Measure(
+        "slide_off_s", Kind.TIME, "s", "slide-off", "slide-off",
+        optional=True, meaning="`slide-off`, see below", place=EventTime("SLIDE_OFF"),
+    ),
+    Measure(
+        "climb_s", Kind.TIME, "s", "climb", "climb",
+        optional=True, meaning="`climb`, see below", place=EventTime("CLIMB"),
     ),
     Measure(
         "overturned_s", Kind.TIME, "s", "overturning", "overturning",
         optional=True, meaning="`overturned`, see below", place=EventTime("OVERTURNED"),
+    ),
+    Measure(
+        "beyond_model_s", Kind.TIME, "s", "model’s end", "first time beyond the model",
+        optional=True, meaning="`beyond_model`", place=StateTime("BEYOND_TIME"),
     ),
     # --- how it was computed
     Measure(

@@ -1,55 +1,88 @@
-"""What is called contact, uplift, onset, flange over, derailed and overturned.
+"""What is called contact, uplift, onset, slide-off, climb and overturned.
 
-Onset of slide-off is a relative roll at which the lifted flange comes over its rail; derailed is a
-wheelset whose flange has crossed its rail's centre line above the crown, or that has moved
-sideways by `SHIFT_LIMIT`; overturned is one whose relative roll is beyond `ROLL_LIMIT`, or whose
-vehicle's centre of gravity stands outside the lower rail once the onset has been reached.
+A train has derailed when a wheelset has left its rails for good, by mechanics and not by a number
+on its centre: a wheelset that rocks about the wheel on which it stands shifts its centre by r0
+sin(psi) + b (1 - cos(psi)), 127 mm at 13 degrees, and may still come back.  In the order in which
+it happens ::
+
+    flange contact    a flange touches its rail
+    uplift            the wheels of one side touch their rail nowhere
+    onset             the flange's tip of a lifted wheel is above the rail's crown
+    flange over       a flange's tip is above its rail's crown, lifted or loaded
+    slide-off         a wheel that bears is displaced on its rail by more than the pair's limit, or
+                      a flange's tip is outside its rail's centre line above the crown
+    climb             the same, where that flange carried load as its tip passed the crown
+    overturned        the relative roll is beyond 30 degrees with a wheel still bearing
+
+A train that leaves its rails and overturns within half a second does both, `combined`; so it is
+followed for so long, to 45 degrees, until its wheels have fallen beside the rails or are far from
+them.  One that overturns first has overturned, whatever its wheels do then: the flange's flank has
+turned with the wheelset, and the bearing wheel rolls over it.
 """
 
 import math
 from typing import Final, NamedTuple
 
 __all__ = [
-    "DERAILED",
+    "BEYOND",
+    "BEYOND_BODY",
+    "BEYOND_STOP",
+    "CHATTER",
+    "CLIMB",
+    "COMBINED_WITHIN",
+    "DERAILMENTS",
     "EVENTS",
     "FLANGE_CONTACT",
     "FLANGE_OVER",
     "ONSET",
     "OVERTURNED",
-    "ROLL_LIMIT",
-    "SHIFT_LIMIT",
+    "OVERTURNED_ROLL",
+    "SLIDE_OFF",
     "UPLIFT",
     "Events",
-    "FlangeTips",
     "Limits",
+    "Wheel",
+    "bears",
     "clearance",
     "derailment_coefficient",
     "events",
-    "flange_tips",
+    "flange_tip",
+    "goes_to",
+    "gone_to",
+    "has_left",
+    "is_above",
     "least_load",
+    "passed_crown",
+    "side_of",
 ]
 
-SHIFT_LIMIT: Final = 0.127  # lateral shift that counts as derailed, m (5 in)
-ROLL_LIMIT: Final = math.pi / 4.0  # relative roll that counts as overturned
+OVERTURNED_ROLL: Final = math.pi / 6.0  # relative roll, rad
+FOLLOWED_ROLL: Final = math.pi / 4.0  # to which a train that has overturned is followed, rad
+FOLLOWED_DISPLACEMENT: Final = 0.130  # and one that has slid off, m
+FALLEN: Final = 0.05  # how far below its place a wheelset has fallen beside its rails, m
+COMBINED_WITHIN: Final = 0.5  # between slide-off and overturning, s
+CHATTER: Final = 0.05  # an event that holds again after less than this has not ended, s
+NEARLY: Final = 1e-4  # below the crown, m; a loaded tip on it flattens a little
 LEAST_SHARE: Final = 0.1  # of the static load, see `least_load`
 
 
 class Limits(NamedTuple):
     """Thresholds of the events."""
 
-    reference_roll: float  # onset of slide-off, rad
     rail_centre: float  # half the distance between the rails' centre lines, m
-    shift: float  # m
-    roll: float  # rad
+    displacement: float  # of a bearing wheel on its rail, m
+    body: float  # of the vehicle's centre of gravity from the track's, m; see `BEYOND_BODY`
 
 
-class FlangeTips(NamedTuple):
-    """Where the flanges' tips are in track axes, m."""
+class Wheel(NamedTuple):
+    """The wheels of one side, seen from there: outward is positive."""
 
-    right_y: float
-    right_z: float
-    left_y: float
-    left_z: float
+    displacement: float  # on the rail, m; see `contact_table`
+    tip_y: float  # flange's tip from the track's centre, m
+    tip_z: float  # below the crowns, m
+    tread: float  # penetrations, m
+    flange: float
+    passed: float  # what `passed_crown` gave last
 
 
 class Events(NamedTuple):
@@ -59,18 +92,31 @@ class Events(NamedTuple):
     uplift: bool
     onset: bool
     flange_over: bool
-    derailed: bool
+    slide_off: bool
+    climb: bool
     overturned: bool
 
 
-FLANGE_CONTACT, UPLIFT, ONSET, FLANGE_OVER, DERAILED, OVERTURNED = range(len(Events._fields))
-EVENTS: Final = tuple(name.replace("_", " ") for name in Events._fields)
+FLANGE_CONTACT, UPLIFT, ONSET, FLANGE_OVER, SLIDE_OFF, CLIMB, OVERTURNED = range(
+    len(Events._fields)
+)
+DERAILMENTS: Final = (SLIDE_OFF, CLIMB, OVERTURNED)
+EVENTS: Final = ("flange contact", "uplift", "onset", "flange over", "slide-off", "climb",
+                 "overturned")  # fmt: skip
+
+BEYOND: Final = (
+    "the car's centre of gravity is beyond the rail: the moment of gravity that a linear car "
+    "leaves out equals the one that holds it",
+    "a bump stop is past the end of its table",
+)
+"""Why the model ends; a run goes on, and what follows is not to be believed."""
+BEYOND_BODY, BEYOND_STOP = 1, 2
 
 
-def flange_tips(
+def flange_tip(
     place: tuple[float, float], sine: float, cosine: float, tip: tuple[float, float]
-) -> FlangeTips:
-    """Places of both tips.
+) -> tuple[float, float]:
+    """Place of the right-hand flange's tip in track axes, m.
 
     Parameters
     ----------
@@ -79,63 +125,111 @@ def flange_tips(
     sine, cosine : float
         Of its roll psi.
     tip : (float, float)
-        Of the right-hand flange in wheelset axes, m.
+        In wheelset axes, m.
     """
     shift, height = place
     y, z = tip
-    return FlangeTips(
-        shift + y * cosine - z * sine,
-        height + y * sine + z * cosine,
-        shift - y * cosine - z * sine,
-        height - y * sine + z * cosine,
-    )
+    return shift + y * cosine - z * sine, height + y * sine + z * cosine
 
 
-def clearance(tips: FlangeTips) -> float:
+def bears(wheel: Wheel) -> bool:
+    """Whether it touches its rail."""
+    return wheel.tread > 0.0 or wheel.flange > 0.0
+
+
+def clearance(left: Wheel, right: Wheel) -> float:
     """How high the higher tip is above the rails' crowns, m."""
-    return max(-tips.left_z, -tips.right_z)
+    return max(-left.tip_z, -right.tip_z)
 
 
-def events(
-    place: tuple[float, float],
-    tips: FlangeTips,
-    centre_of_gravity: float,
-    flange_penetration: float,
-    off: float,
-    limits: Limits,
-) -> Events:
+def is_above(tip_z: float, flange: float) -> bool:
+    """Whether a flange's tip is above the crown, or stands on it."""
+    return tip_z < max(flange, 0.0) + NEARLY
+
+
+def passed_crown(before: float, tip_z: float, flange: float) -> float:
+    """How a flange's tip came above the crown: 1 under load, -1 lifted; 0 where it is below.
+
+    Parameters
+    ----------
+    before : float
+        The same one frame before.
+    tip_z : float
+        Tip below the crown, m.
+    flange : float
+        Penetration of the flange, m.
+    """
+    now = 1.0 if flange > 0.0 else -1.0
+    return (before if before != 0.0 else now) if is_above(tip_z, flange) else 0.0
+
+
+def gone_to(wheel: Wheel, limits: Limits) -> float:
+    """1 for a wheel that has left its rail outward for good, -1 inward; else 0."""
+    crossed = wheel.passed != 0.0 and wheel.tip_y > limits.rail_centre
+    displaced = bears(wheel) and abs(wheel.displacement) >= limits.displacement
+    return 1.0 if crossed or (displaced and wheel.displacement > 0.0) else -1.0 * displaced
+
+
+def events(roll: float, left: Wheel, right: Wheel, limits: Limits) -> Events:
     """Which events hold.
 
     Parameters
     ----------
-    place : (float, float)
-        Shift, m, and roll, rad.
-    tips : FlangeTips
-    centre_of_gravity : float
-        Of the vehicle, from the middle of the track along the ground's horizontal, m.
-    flange_penetration : float
-        The larger of both flanges', m.
-    off : float
-        1 if a wheel touches its rail nowhere, else 0.
+    roll : float
+        Relative roll, rad.
+    left, right : Wheel
     limits : Limits
     """
-    shift, roll = place
-    rail = limits.rail_centre
-    # a derailing flange passes over its rail's head, so it is above the crown when it crosses
-    across = max(
-        tips.right_y - rail if tips.right_z < 0.0 else -1.0,
-        -tips.left_y - rail if tips.left_z < 0.0 else -1.0,
-    )
-    # the lower wheel's contact is near the running circle of its rail
-    beyond = abs(centre_of_gravity) - rail
-    onset = abs(roll) >= limits.reference_roll
+    left_bears, right_bears = bears(left), bears(right)
+    left_gone, right_gone = gone_to(left, limits) != 0.0, gone_to(right, limits) != 0.0
+    climbs = (left_gone and left.passed > 0.0) or (right_gone and right.passed > 0.0)
     return Events(
-        flange_penetration > 0.0,
-        off > 0.0,
-        onset,
-        clearance(tips) > 0.0,
-        across > 0.0 or abs(shift) >= limits.shift,
-        abs(roll) >= limits.roll or (beyond > 0.0 and onset),
+        left.flange > 0.0 or right.flange > 0.0,
+        not (left_bears and right_bears),
+        (left.tip_z < 0.0 and not left_bears) or (right.tip_z < 0.0 and not right_bears),
+        left.tip_z < 0.0 or right.tip_z < 0.0,
+        (left_gone or right_gone) and not climbs,
+        climbs,
+        abs(roll) >= OVERTURNED_ROLL and (left_bears or right_bears),
+    )
+
+
+def side_of(left: bool, right: bool, otherwise: float) -> float:
+    """-1 where only the left side does it, 1 where only the right one; else ``otherwise``."""
+    if left == right:
+        return otherwise
+    return 1.0 if right else -1.0
+
+
+def goes_to(roll: float, left: Wheel, right: Wheel) -> float:
+    """Displacement of the wheelset to the right, by its bearing wheel's own, m."""
+    lower = 1.0 if roll > 0.0 else -1.0
+    side = side_of(bears(left), bears(right), 0.0 if bears(left) else lower)
+    weight = 0.5 * (1.0 + side)
+    return weight * right.displacement - (1.0 - weight) * left.displacement
+
+
+def has_left(roll: float, wheels: tuple[float, float], since: float, both: bool) -> bool:
+    """Whether a derailed train need not be followed any longer.
+
+    Parameters
+    ----------
+    roll : float
+        Relative roll, rad.
+    wheels : (float, float)
+        Displacement of the wheelset by its bearing wheel, and how far it has fallen, m.
+    since : float
+        Time since it derailed, s.
+    both : bool
+        Whether it has both left its rails and overturned.
+    """
+    displaced, fallen = wheels
+    return (
+        both
+        or since >= COMBINED_WITHIN
+        or abs(roll) >= FOLLOWED_ROLL
+        or abs(displaced) >= FOLLOWED_DISPLACEMENT
+        or fallen >= FALLEN
     )
 
 

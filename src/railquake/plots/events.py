@@ -8,6 +8,7 @@ import numpy as np
 
 from railquake.inputs.support import Pier
 from railquake.measures import STANDARD_GRAVITY, short_name
+from railquake.physics.derailment import DERAILMENTS, EVENTS
 from railquake.plots.style import BLACK, FAINT, GREEN, ORANGE, PURPLE, RED, plain
 
 if TYPE_CHECKING:
@@ -20,11 +21,11 @@ EVENT_COLOURS = {
     "uplift": GREEN,
     "onset": RED,
     "flange over": PURPLE,
-    "derailed": BLACK,
+    "slide-off": BLACK,
+    "climb": BLACK,
     "overturned": BLACK,
 }
 EVENT_LABELS = {"onset": "onset of slide-off"}
-FINAL = ("derailed", "overturned")
 
 
 def run_title(response: Response) -> str:
@@ -49,8 +50,7 @@ def verdict(response: Response) -> str:
     uplift = f"peak {short_name('uplift_ratio')} {ratio:.3g} (1: onset of slide-off)"
     mode = response.derailment_mode
     if mode is not None:
-        how = mode if mode.startswith("overturned") else f"derailed, {mode}"
-        return f"{how} at {leaves(response):.2f} s; {uplift}"
+        return f"derailed, {mode}, at {leaves(response):.2f} s; {uplift}"
     return f"{response.status}; {uplift}"
 
 
@@ -60,8 +60,9 @@ def peak_roll(response: Response) -> float:
 
 
 def leaves(response: Response) -> float | None:
-    """When the train left the track, s; None if it did not."""
-    times = [event.begin_s for event in response.events if event.name in FINAL]
+    """When the train derailed, s; None if it did not."""
+    final = [EVENTS[event] for event in DERAILMENTS]
+    times = [one.time_s for one in response.happenings if one.event in final]
     return min(times) if times else None
 
 

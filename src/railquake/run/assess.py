@@ -167,6 +167,7 @@ _WORKED_OUT: Mapping[str, Callable[[Response], Any]] = {
     "period": _period,
     "spectral_acceleration": _spectral_acceleration,
     "spectral_intensity": lambda response: spectral.spectral_intensity(response.system.ground),
+    "sequence": lambda response: response.explain(),
     "speed": _speed,
     "time_step_error": _time_step_error,
     "track_intensity": _track_intensity,

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from railquake.march.order import kernel_order
-from railquake.physics.derailment import DERAILED, EVENTS, ONSET, UPLIFT
+from railquake.physics.derailment import CHATTER, EVENTS, ONSET, UPLIFT
 from railquake.physics.energy import EnergyAudit
+from railquake.run import verdict
 
 if TYPE_CHECKING:
     import xarray
 
     from railquake.assembly import System
     from railquake.run.time_step import TimeStep
+    from railquake.run.verdict import Happening
 
 __all__ = ["EVENT_NAMES", "Channel", "Event", "Response", "channels"]
 
@@ -123,13 +125,22 @@ class Response:
 
     @property
     def derailment_mode(self) -> str | None:
-        """How it derailed: ``slide-off`` or ``overturned``, to the ``left`` or ``right``."""
-        end, state = self.end[:, 0], self.system.layout.state
-        if end[state.ON_TRACK] > 0.0 or end[state.DIVERGED] > 0.0:
-            return None
-        if end[state.FIRST_TIME + DERAILED] >= 0.0:
-            return "slide-off right" if end[state.SHIFT] > 0.0 else "slide-off left"
-        return "overturned right" if end[state.ROLL] > 0.0 else "overturned left"
+        """How it derailed and to which side, such as ``slide-off left``; None if it did not."""
+        return verdict.derailment_mode(self)
+
+    @property
+    def beyond_model(self) -> str | None:
+        """Why the car has been where its model ends; what follows is not to be believed."""
+        return verdict.beyond_model(self)
+
+    @property
+    def happenings(self) -> tuple[Happening, ...]:
+        """Every event when it first held, with its side and where the wheelset was."""
+        return verdict.happenings(self)
+
+    def explain(self) -> str:
+        """What happened to the train, in sentences; see `verdict.explain`."""
+        return verdict.explain(self)
 
     @property
     def times(self) -> Array:
@@ -162,16 +173,21 @@ class Response:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """All events in the order of their beginnings."""
+        """All events in the order of their beginnings.
+
+        A contact that is lost and made again within `derailment.CHATTER` has not ended.
+        """
         flags = np.rint(self.channel("events")).astype(int)
         time = self.times
         found = []
         for k, name in enumerate(EVENT_NAMES):
             holds = (flags >> k) & 1
             change = np.diff(np.concatenate([[0], holds, [0]]))
-            for begin, end in zip(
-                np.flatnonzero(change > 0), np.flatnonzero(change < 0), strict=True
-            ):
+            begins, ends = np.flatnonzero(change > 0), np.flatnonzero(change < 0)
+            apart = (begins[1:] - ends[:-1]) * (time[1] - time[0]) > CHATTER
+            begins = begins[np.concatenate([[True], apart])] if len(begins) else begins
+            ends = ends[np.concatenate([apart, [True]])] if len(ends) else ends
+            for begin, end in zip(begins, ends, strict=True):
                 last = float(time[end]) if end < len(time) else float("nan")
                 found.append(Event(name, float(time[begin]), last))
         return tuple(sorted(found, key=lambda event: event.begin_s))

@@ -10,7 +10,6 @@ import numpy as np
 
 from railquake.assembly import System, assemble
 from railquake.march.compiler import SCALAR, Target
-from railquake.physics.derailment import DERAILED, OVERTURNED
 from railquake.run.assess import assess
 from railquake.run.audit import audit
 from railquake.run.response import Channel, Response, channels
@@ -125,9 +124,8 @@ def _forget_train(
 ) -> None:
     """NaN for the train's motion once it has left the track."""
     state = system.layout.state
-    times = end[state.FIRST_TIME + np.array([DERAILED, OVERTURNED]), 0]
-    left = times[times >= 0.0]
-    if end[state.ON_TRACK, 0] > 0.0 or left.size == 0:
+    left = float(end[state.LEFT_TIME, 0])
+    if left < 0.0:
         return
-    last = round(float(left.min()) / (system.dt * system.frame_steps))
+    last = round(left / (system.dt * system.frame_steps))
     frames[last + 1 :, [channel.train for channel in kept]] = np.nan

@@ -12,10 +12,21 @@ from railquake.march.events import detect_events
 from railquake.march.events import release_train as release
 from railquake.march.order import kernel_order
 from railquake.march.rows import constant, state
-from railquake.physics.derailment import FLANGE_CONTACT, UPLIFT
+from railquake.physics.derailment import (
+    BEYOND_BODY,
+    BEYOND_STOP,
+    CLIMB,
+    FLANGE_CONTACT,
+    ONSET,
+    OVERTURNED,
+    SLIDE_OFF,
+    UPLIFT,
+)
 from stages import stage
 
-NAMES = ("flange contact", "uplift", "onset", "flange over", "derailed", "overturned")
+NAMES = (
+    "flange contact", "uplift", "onset", "flange over", "slide-off", "climb", "overturned",
+)  # fmt: skip
 STILL = GroundMotion("still", 0.01, np.zeros(3))
 PATCHES = slice(state.PATCH_HYSTERESIS, state.FORCE_Y)
 FORCES = slice(state.FORCE_Y, state.WHEELSET_FREE)  # on wheelset, track and pier
@@ -55,7 +66,8 @@ def test_nothing_happens_to_a_train_at_rest(system):
     s = placed(system)
     assert holding(system, s) == []
     assert s[state.LEAVING, 0] == s[state.DIVERGED, 0] == s[state.UPLIFTS, 0] == 0.0
-    assert np.all(s[state.FIRST_TIME : state.FIRST_TIME + 6] == -1.0)
+    assert np.all(s[state.FIRST_TIME : state.FIRST_TIME + len(NAMES)] == -1.0)
+    assert s[state.DERAILED_TIME, 0] == s[state.BEYOND_TIME, 0] == -1.0
 
 
 @pytest.mark.parametrize("patch", [1, 3])
@@ -95,11 +107,16 @@ def test_uplifts_are_counted_and_their_end_noted(system):
     assert s[state.FIRST_TIME + UPLIFT, 0] == 1.0
 
 
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_onset_at_the_reference_roll(system, sign):
-    limit = system.constants[constant.REFERENCE_ROLL, 0]
-    assert holding(system, placed(system, roll=sign * 0.999 * limit)) == []
-    assert holding(system, placed(system, roll=sign * 1.001 * limit))[0] == "onset"
+def test_a_wheel_that_lifts_again_at_once_has_not_come_back(system):
+    """Within 50 ms: an impact that bounces, not a second uplift."""
+    s = placed(system)
+    for time, up in ((1.0, True), (1.2, False), (1.24, True), (1.3, False), (1.36, True)):
+        now = placed(system)
+        if up:
+            lift(now, 0)
+        s[PATCHES], s[state.TIME] = now[PATCHES], time
+        detect_events(s, system.constants, 0)
+    assert s[state.UPLIFTS, 0] == 2.0
 
 
 def tip(system):
@@ -107,59 +124,143 @@ def tip(system):
     return q[constant.TIP_Y], q[constant.TIP_Z]
 
 
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
-@pytest.mark.parametrize("over", [-1e-4, 1e-4])
-def test_flange_is_over_when_its_tip_is_above_the_crown(system, sign, over):
-    """Turned about the wheelset's centre; the tip's height by a rotation of the plane."""
+def rocked(system, side, roll, over=2e-3, **rows):
+    """State with that side's wheels lifted by a roll, the tip of their flange over the crown.
+
+    The roll turns about the wheelset's centre; the tip's height by a rotation of the plane.
+    """
     y, z = tip(system)
-    roll = 0.01
-    # the lifted side is the left one for a positive roll (right side down)
-    highest = -y * math.sin(roll) + z * math.cos(roll)
-    s = placed(system, roll=sign * roll)
-    s[state.HEIGHT] = -highest - over
-    found = holding(system, s)
-    assert ("flange over" in found) == (over > 0.0)
-    expected = over if over > 0.0 else -1.0
-    assert s[state.PEAK_CLEARANCE, 0] == pytest.approx(max(over, expected), abs=1e-12)
-
-
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
-@pytest.mark.parametrize("beyond", [-1e-4, 1e-4])
-def test_derailed_when_the_tip_crosses_the_rails_middle_above_it(system, sign, beyond):
-    y, z = tip(system)
-    roll = 0.02
-    middle = system.constants[constant.RAIL_CENTRE, 0]
-    # right side up (negative roll), sliding to the right: the right tip crosses its rail
-    across = y * math.cos(roll) + z * math.sin(roll)
-    s = placed(system, shift=sign * (middle + beyond - across), roll=-sign * roll)
-    s[state.HEIGHT] = -(z * math.cos(roll) - y * math.sin(roll)) - 2e-3
-    assert ("derailed" in holding(system, s)) == (beyond > 0.0)
-    assert s[state.LEAVING, 0] == (1.0 if beyond > 0.0 else 0.0)
-    low = placed(system, shift=sign * (middle + 1e-3 - across), roll=-sign * roll)
-    low[state.HEIGHT] = -(z * math.cos(roll) - y * math.sin(roll)) + 2e-3
-    assert "derailed" not in holding(system, low)  # a tip beside the head has crossed nothing
-
-
-@pytest.mark.parametrize(("shift", "derails"), [(0.1269, False), (0.1271, True), (-0.1271, True)])
-def test_derailed_by_a_shift_of_127_mm(system, shift, derails):
-    assert ("derailed" in holding(system, placed(system, shift=shift))) == derails
-
-
-@pytest.mark.parametrize(("degrees", "over"), [(44.9, False), (45.1, True), (-45.1, True)])
-def test_overturned_by_a_roll_of_45_degrees(system, degrees, over):
-    s = placed(system, roll=math.radians(degrees))
-    assert ("overturned" in holding(system, s)) == over
+    s = placed(system, roll=-side * roll, **rows)
+    s[state.HEIGHT] = -(z * math.cos(roll) - y * math.sin(roll)) - over
+    lift(s, 2 if side > 0.0 else 0)
+    return s
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-@pytest.mark.parametrize(("beyond", "rolled", "over"), [
-    (0.01, 1.1, True), (-0.01, 1.1, False), (0.01, 0.9, False),
+@pytest.mark.parametrize("over", [-1e-4, 1e-4])
+def test_onset_is_a_lifted_flange_above_its_rails_crown(system, side, over):
+    s = rocked(system, side, 0.01, over)
+    found = holding(system, s)
+    assert ("onset" in found) == ("flange over" in found) == (over > 0.0)
+    assert s[state.PEAK_CLEARANCE, 0] == pytest.approx(over if over > 0.0 else -1e-4, abs=1e-12)
+    if over > 0.0:
+        assert s[state.FIRST_SIDE + ONSET, 0] == side
+        assert s[state.FIRST_ROLL + ONSET, 0] == pytest.approx(-side * 0.01)
+
+
+def test_a_loaded_flange_above_its_rail_is_no_onset(system):
+    s = rocked(system, 1.0, 0.01)
+    s[state.PATCH_PENETRATION + 3] = 1e-4
+    assert holding(system, s) == ["flange contact", "flange over"]
+
+
+def crossing(system, side, beyond, roll=0.02, over=2e-3):
+    """That side's tip so far outside its rail's middle, the other side bearing."""
+    y, z = tip(system)
+    across = y * math.cos(roll) + z * math.sin(roll)
+    middle = system.constants[constant.RAIL_CENTRE, 0]
+    s = rocked(system, side, roll, over)
+    s[state.SHIFT] = side * (middle + beyond - across)
+    return s
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("beyond", [-1e-4, 1e-4])
+def test_a_lifted_flange_that_crosses_its_rail_slides_off(system, side, beyond):
+    s = crossing(system, side, beyond)
+    assert ("slide-off" in holding(system, s)) == (beyond > 0.0)
+    if beyond > 0.0:
+        assert s[state.FIRST_SIDE + SLIDE_OFF, 0] == side
+        assert s[state.DERAILED_TIME, 0] == 2.5
+    # a tip beside the head has crossed nothing
+    assert "slide-off" not in holding(system, crossing(system, side, 1e-3, over=-2e-3))
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_flange_that_came_over_under_load_climbs(system, side):
+    """What counts is whether it bore as its tip passed the crown."""
+    flange = state.PATCH_PENETRATION + (3 if side > 0.0 else 1)
+    s = crossing(system, side, -0.02)
+    s[flange] = 1e-4
+    assert not {"slide-off", "climb"} & set(holding(system, s))
+    s[flange] = -1e-4  # it hops on top of the rail
+    s[state.SHIFT] = crossing(system, side, 1e-3)[state.SHIFT]
+    assert "climb" in holding(system, s)
+    assert s[state.FIRST_SIDE + CLIMB, 0] == side
+    assert s[state.FIRST_TIME + SLIDE_OFF, 0] == -1.0
+    # lifted over the crown, and landed on it later
+    s = crossing(system, side, -0.02)
+    holding(system, s)
+    s[flange] = 1e-4
+    s[state.SHIFT] = crossing(system, side, 1e-3)[state.SHIFT]
+    assert "slide-off" in holding(system, s)
+
+
+@pytest.mark.parametrize(("shift", "derails"), [(0.0699, False), (0.0701, True), (-0.0701, True)])
+def test_slide_off_by_the_bearing_wheels_displacement(system, shift, derails):
+    assert ("slide-off" in holding(system, placed(system, shift=shift))) == derails
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_wheelset_that_rocks_in_place_does_not_slide_off(system, side):
+    """At 14 degrees its centre is 136 mm beside its place; the bearing wheel has not moved."""
+    roll = math.radians(14.0)
+    q = system.constants[:, 0]
+    b, r0 = q[constant.HALF_SPACING], q[constant.NOMINAL_RADIUS]
+    centre = side * (r0 * math.sin(roll) + b * (1.0 - math.cos(roll)))
+    s = placed(system, shift=centre, roll=side * roll)
+    s[state.HEIGHT] = -b * math.sin(roll) - r0 * math.cos(roll)
+    lift(s, 0 if side > 0.0 else 2)
+    assert abs(centre) > 0.12
+    assert holding(system, s) == ["uplift", "onset", "flange over"]
+    assert s[state.FIRST_DISPLACEMENT + UPLIFT, 0] == pytest.approx(0.0, abs=1e-12)
+    assert s[state.FIRST_SIDE + UPLIFT, 0] == -side
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize(("degrees", "over"), [(29.9, False), (30.1, True)])
+def test_overturned_by_a_roll_of_30_degrees_on_a_bearing_wheel(system, sign, degrees, over):
+    s = placed(system, roll=sign * math.radians(degrees))
+    lift(s, 0 if sign > 0.0 else 2)
+    assert ("overturned" in holding(system, s)) == over
+    if over:
+        assert s[state.FIRST_SIDE + OVERTURNED, 0] == sign
+    lift(s, 0, 2)
+    assert "overturned" not in holding(system, s)  # in the air
+
+
+def test_a_derailed_train_is_followed_for_half_a_second(system):
+    """So that sliding off and overturning together are seen."""
+    s = crossing(system, 1.0, 1e-3)
+    holding(system, s)
+    assert s[state.LEAVING, 0] == 0.0
+    for time, leaves in ((2.99, 0.0), (3.0, 1.0)):
+        s[state.TIME] = time
+        holding(system, s)
+        assert s[state.LEAVING, 0] == leaves
+    assert s[state.LEFT_TIME, 0] == 3.0
+
+
+@pytest.mark.parametrize("rows", [
+    {"SHIFT": 0.6}, {"ROLL": math.radians(45.1)}, {"HEIGHT": -0.33}, {"FIRST_TIME": 2.4},
 ])  # fmt: skip
-def test_overturned_when_the_centre_of_gravity_is_outside_the_lower_contact(
-    system, side, beyond, rolled, over
+def test_a_train_is_followed_no_further(system, rows):
+    """Far off its rails, beyond 45 degrees, fallen beside them, or once both have happened."""
+    s = crossing(system, 1.0, 1e-3)
+    holding(system, s)
+    for name, value in rows.items():
+        s[getattr(state, name) + (OVERTURNED if name == "FIRST_TIME" else 0)] = value
+    holding(system, s)
+    assert s[state.LEAVING, 0] == 1.0
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("beyond", [-0.01, 0.01])
+def test_a_linear_cars_model_ends_where_its_centre_of_gravity_is_beyond_the_rail(
+    system, side, beyond
 ):
     q = system.constants
-    s = placed(system, roll=side * rolled * q[constant.REFERENCE_ROLL, 0])
+    s = placed(system)
     s[state.TRACK_Y] = 0.3
     mass = system.vehicle.mass[0::3]
     # only the car moves: the whole car's centre by its share
@@ -167,7 +268,29 @@ def test_overturned_when_the_centre_of_gravity_is_outside_the_lower_contact(
     lateral = state.VEHICLE_X + np.argsort(kernel_order(9))[0::3]
     s[lateral, 0] = 0.3
     s[lateral[0], 0] += moved * mass.sum() / mass[0]
-    assert ("overturned" in holding(system, s)) == over
+    assert holding(system, s) == []  # it is no derailment
+    assert s[state.BEYOND_TIME, 0] == (2.5 if beyond > 0.0 else -1.0)
+    assert s[state.BEYOND_REASON, 0] == (BEYOND_BODY if beyond > 0.0 else 0.0)
+    s[state.TIME] = 3.5
+    holding(system, s)
+    assert s[state.BEYOND_TIME, 0] == (2.5 if beyond > 0.0 else -1.0)  # the first time is kept
+
+
+def test_a_car_under_gravity_ends_where_a_stop_is_past_its_table():
+    system = rq.assemble(
+        rq.scenario(vehicle="bart-under-gravity", support="at-grade", motion=STILL)
+    )
+    rows, constants = system.layout.state, system.layout.constant
+    detect = stage(system, detect_events)
+    ends = system.constants[constants.STOP_END :, 0][: system.layout.size.STOPS]
+    number = np.flatnonzero(np.isfinite(ends))[1]  # the lateral table of the second bogie
+    assert ends[number] == pytest.approx(0.065)
+    for travel, reason in ((0.0649, 0.0), (0.0651, BEYOND_STOP)):
+        s = system.start.copy()
+        s[rows.STOP_TRAVEL + number] = travel
+        s[rows.VEHICLE_X] = 2.0  # gravity's moment is in its equations
+        detect(s, system.constants, 0)
+        assert s[rows.BEYOND_REASON, 0] == reason
 
 
 @pytest.mark.parametrize(
