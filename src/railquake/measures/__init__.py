@@ -36,8 +36,8 @@ MEASURES: tuple[Measure, ...] = (
         "status", Kind.OUTCOME, "", "status", "status",
         value=str,
         meaning="`safe`; `onset`: a lifted flange came above its rail, the train stayed; "
-        "`derailed`; `diverged`: a state left every plausible bound, the run was stopped; `not converged`: "
-        "the hinge's iteration failed in some step",
+        "`derailed`; `diverged`: a state left every plausible bound, the run was stopped; `not "
+        "converged`: the hinge's iteration failed in some step",
         place=AttributeOf("status"),
     ),
     Measure(

@@ -120,7 +120,8 @@ def explain(response: Response) -> str:
     told = [
         (one.time_s, _SENTENCES[EVENTS.index(one.event)](one))
         for one in found
-        # a lifted flange above its rail is the onset, told already; a car that has overturned is off
+        # a lifted flange above its rail is the onset, told already; what a car does that has
+        # overturned is no news
         if (one.event != EVENTS[FLANGE_OVER] or onset is None or one.time_s < onset.time_s)
         and one.time_s <= over
     ]
