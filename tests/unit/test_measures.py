@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter, lsim
+from scipy.signal import lsim
 
 import railquake as rq
 from railquake import measures
@@ -149,14 +149,6 @@ def test_spectral_acceleration_is_that_of_the_spectra(dt, period):
     motion = GroundMotion("noise", dt, np.random.default_rng(1).standard_normal(1500))
     known = response_spectrum(motion, [period], 0.05).psa[0]
     assert spectral.spectral_acceleration(motion, period) == pytest.approx(known, rel=1e-12)
-
-
-def test_recursion_by_doubling_is_the_one_sample_by_sample():
-    growth = 0.99 * np.exp(0.1j)
-    for count in (1, 2, 37):
-        loads = np.random.default_rng(2).standard_normal(count) + 0j
-        found = spectral.recursion(growth, loads)
-        assert found == pytest.approx(lfilter([1.0], [1.0, -growth], loads), rel=1e-12)
 
 
 @pytest.mark.parametrize(

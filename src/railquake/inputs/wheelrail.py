@@ -185,10 +185,14 @@ class WheelRail(FromPreset):
     restitution_law: Annotated[
         str,
         KnownLaw(RESTITUTION_LAWS),
-        Field(description="calibrated: a free impact rebounds at exactly the coefficient"),
+        Field(
+            description="calibrated: a free impact rebounds at exactly the coefficient; "
+            "constant-hysteresis: without memory"
+        ),
     ] = "hunt-crossley"
     onset_rate_bound: Annotated[
-        PositiveSpeed, Field(description="Least approach rate at the onset of contact [m/s]")
+        PositiveSpeed,
+        Field(description="Least approach rate at an onset, for laws that remember it [m/s]"),
     ] = 0.1
     speed_bound: Annotated[
         PositiveSpeed, Field(description="Least train speed in the creepages [m/s]")

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from railquake.inputs.ground_motion import spectrum
+from railquake.march.compiler import SCALAR, bind
 from railquake.measures import housner
+from railquake.physics.oscillator import RampStep, largest_swings, pseudo_velocity
 from railquake.physics.pier import natural_frequencies, stiffness_matrix
 
 if TYPE_CHECKING:
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
     from railquake.inputs.support import Pier
 
 __all__ = ["DAMPING", "first_period", "spectral_acceleration", "spectral_intensity"]
+
+Array = np.ndarray[Any, Any]
 
 DAMPING = 0.05
 REMEMBERED = 64  # motions
@@ -78,59 +82,39 @@ def spectral_intensity(ground: GroundMotion) -> float:
 
 @lru_cache(maxsize=REMEMBERED)
 def _ordinate(samples: bytes, dt: float, period: float) -> float:
-    return _pseudo_velocity(np.frombuffer(samples), dt, period, DAMPING)
+    return _pseudo_velocities(samples, dt, (period,), DAMPING)[0]
 
 
 @lru_cache(maxsize=REMEMBERED)
 def _intensity(samples: bytes, dt: float) -> float:
-    ground = np.frombuffer(samples)
-    found = [_pseudo_velocity(ground, dt, T, housner.DAMPING) for T in housner.PERIODS]
-    return housner.spectral_intensity(found)
+    return housner.spectral_intensity(
+        _pseudo_velocities(samples, dt, housner.PERIODS, housner.DAMPING)
+    )
 
 
-def _pseudo_velocity(
-    ground: np.ndarray[Any, Any], dt: float, period: float, damping: float
-) -> float:
-    """Ordinate of the pseudo-velocity spectrum, m/s; ``ground`` in m/s2."""
-    frequency = 2.0 * math.pi / period
-    eigenvalue = spectrum._eigenvalue(frequency, damping)
-    old, new = spectrum._load_weights(eigenvalue, dt)
-    loads = np.zeros(ground.size, dtype=np.complex128)  # at rest at the first sample
-    loads[1:] = -(old * ground[:-1] + new * ground[1:])
-    state = recursion(np.exp(eigenvalue * dt), loads)
-    largest = float(np.max(np.abs(state.imag)))
-    substeps = min(math.ceil(spectrum.POINTS_PER_PERIOD * dt / period), spectrum.MAX_SUBSTEPS)
-    for substep in range(1, substeps):  # between samples, where the load is linear too
-        share = substep / substeps
-        between = ground[:-1] + share * (ground[1:] - ground[:-1])
-        old, new = spectrum._load_weights(eigenvalue, share * dt)
-        grown = np.exp(eigenvalue * share * dt) * state[:-1]
-        there = grown - old * ground[:-1] - new * between
-        largest = max(largest, float(np.max(np.abs(there.imag))))
-    return largest / math.sqrt(1.0 - damping**2)
+def _pseudo_velocities(
+    samples: bytes, dt: float, periods: tuple[float, ...], damping: float
+) -> list[float]:
+    """Ordinates of the pseudo-velocity spectrum, m/s; ``samples`` of float, in m/s2.
 
-
-def recursion(growth: complex, loads: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """States ``s[i] = growth s[i-1] + loads[i]``, from nothing before the first.
-
-    By doubling: once each state holds the loads of ``span`` samples, it takes that of the state
-    ``span`` before it.  No loop over samples, no library of matrices, whose threads get into each
-    other's way where many rows are made at once, and no scipy.signal, whose import takes longer
-    than many a run.
-
-    Parameters
-    ----------
-    growth : complex
-        Of size 1 at most.
-    loads : array of complex, shape (n,)
-
-    Returns
-    -------
-    array of complex, shape (n,)
+    The oscillators are followed by compiled code, and not by a filter of scipy.signal, whose
+    import takes longer than many a run.
     """
-    states = loads.copy()
-    span = 1
-    while span < states.size:
-        states[span:] += growth**span * states[:-span]
-        span *= 2
-    return states
+    substeps, steps = _steps(dt, periods, damping)
+    largest = np.empty(len(periods))
+    bind(largest_swings, SCALAR).call(np.frombuffer(samples), substeps, steps, largest)
+    return [pseudo_velocity(im, damping) for im in largest.tolist()]
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _steps(dt: float, periods: tuple[float, ...], damping: float) -> tuple[Array, Array]:
+    """Steps from one sample to the next, and what each takes: the same for many motions."""
+    substeps = np.empty(len(periods), dtype=np.int64)
+    steps = np.empty((len(periods), len(RampStep._fields)))
+    for m, period in enumerate(periods):
+        substeps[m] = spectrum.substeps(dt, period)
+        h = dt / substeps[m]
+        eigenvalue = spectrum._eigenvalue(2.0 * math.pi / period, damping)
+        parts = np.array([np.exp(eigenvalue * h), *spectrum._load_weights(eigenvalue, h)])
+        steps[m] = RampStep(*np.column_stack((parts.real, parts.imag)).ravel())
+    return substeps, steps

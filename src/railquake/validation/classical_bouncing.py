@@ -14,7 +14,8 @@ TITLE = "A bouncing wheel"
 SOURCE = """Hunt and Crossley (1975): with $x = \\delta'/\\delta'_0$ the motion during a free
 impact gives $\\alpha(1+e) = \\ln\\frac{1+\\alpha}{1-\\alpha e}$ for the rebound $e$, whatever
 mass, stiffness and speed; it is solved here. As printed $\\alpha = \\frac32(1-c_r)$; as
-calibrated it is chosen so that $e = c_r$."""
+calibrated it is chosen so that $e = c_r$. With constant hysteresis $\\alpha$ grows with
+$\\delta'_0$, and is the printed one at 1 m/s."""
 WHAT = """A block on its two wheels falls on the rails at 1 m/s, weightless (the ground falls
 with $g$) and without friction; the speed at which it leaves them over that at which it met them."""
 WHY = """The contact lasts some hundred steps of 5e-6 s, and its onset and loss are noticed
@@ -23,7 +24,7 @@ within one of them, when next to no force acts: a tenth of a per cent is ample."
 TOLERANCE = 1e-3
 CASES = (
     ("hunt-crossley", 0.9), ("hunt-crossley", 0.6), ("hunt-crossley", 0.3), ("hunt-crossley", 0.0),
-    ("calibrated", 0.9), ("calibrated", 0.6), ("calibrated", 0.3),
+    ("calibrated", 0.9), ("calibrated", 0.6), ("calibrated", 0.3), ("constant-hysteresis", 0.6),
 )  # fmt: skip
 MASS, SPEED, DT = 2000.0, 1.0, 5e-6
 
@@ -48,7 +49,7 @@ def promised(law: str, restitution: float) -> float:
 
     if law == "calibrated":
         return restitution
-    alpha = 1.5 * (1.0 - restitution)
+    alpha = 1.5 * (1.0 - restitution)  # of the constant law at its reference rate, `SPEED`
 
     def excess(e: float) -> float:
         return float(alpha * (1.0 + e) - np.log((1.0 + alpha) / (1.0 - alpha * e)))
@@ -79,7 +80,7 @@ def bounce(law: str, restitution: float) -> tuple[np.ndarray, np.ndarray]:
     return response.times[2:], speed[1:]
 
 
-CAPTION = "Downward speed of the wheel: from 1 m/s to its rebound, printed and calibrated law."
+CAPTION = "Downward speed of the wheel: from 1 m/s to its rebound, by each law."
 
 
 def draw(bounces: dict[tuple[str, float], tuple[np.ndarray, np.ndarray]], path: Path) -> None:

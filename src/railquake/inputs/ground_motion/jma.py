@@ -11,6 +11,7 @@ and cuts off the second: its intensity 5.1 is 5.10 to 5.19 here.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,12 +62,20 @@ def jma_acceleration(*components: GroundMotion) -> float:
     dt = components[0].dt
     sampled = [one.resampled(dt).acceleration for one in components]
     count = max(len(values) for values in sampled)
-    weights = filter_weights(np.fft.rfftfreq(count, dt).astype(np.float64))
+    weights = _weights(count, dt)
     filtered = [np.fft.irfft(np.fft.rfft(v, count) * weights, count) for v in sampled]
     falling = np.sort(np.sqrt(np.sum(np.square(filtered), axis=0)))[::-1]
     # the n-th largest sample is reached or exceeded during n steps
     time = dt * np.arange(1, count + 1)
     return float(np.interp(EXCEEDED_TIME, time, falling, right=0.0))
+
+
+@lru_cache(maxsize=8)
+def _weights(count: int, dt: float) -> NDArray[np.float64]:
+    """`filter_weights` of a transform: motions of one study are mostly as long as each other."""
+    weights = filter_weights(np.fft.rfftfreq(count, dt).astype(np.float64))
+    weights.setflags(write=False)
+    return weights
 
 
 def filter_weights(frequencies: NDArray[np.float64]) -> NDArray[np.float64]:

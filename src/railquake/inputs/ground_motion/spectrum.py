@@ -85,9 +85,8 @@ def response_spectrum(
             sa[place] = motion.pga
             continue
         frequency[place] = 2.0 * np.pi / period
-        substeps = int(np.ceil(POINTS_PER_PERIOD * motion.dt / period))
         sd[place], sv[place], sa[place] = _peaks(
-            motion, frequency[place], damping_ratio, min(max(substeps, 1), MAX_SUBSTEPS)
+            motion, frequency[place], damping_ratio, substeps(motion.dt, float(period))
         )
     psa = frequency**2 * sd
     psa[wanted == 0.0] = motion.pga
@@ -98,6 +97,12 @@ def spectral_intensity(motion: GroundMotion) -> float:
     """Housner's spectral intensity SI, 20 % damping, 0.1 to 2.5 s, m/s; see `measures.housner`."""
     spectrum = response_spectrum(motion, housner.PERIODS, housner.DAMPING)
     return housner.spectral_intensity(spectrum.psv.tolist())
+
+
+def substeps(dt: float, period: float) -> int:
+    """Steps from one sample to the next in which peaks are looked for; both in s."""
+    wanted = int(np.ceil(POINTS_PER_PERIOD * dt / period))
+    return min(max(wanted, 1), MAX_SUBSTEPS)
 
 
 def oscillator_response(

@@ -3,8 +3,9 @@
     N = (K + chi delta') delta^1.5 >= 0      chi = alpha_r K / delta'_0              (Eqs. 5, 7)
 
 delta'_0 is the rate at the onset of this contact, frozen until it is lost, and bounded below.  A
-*restitution law* says which alpha_r belongs to a coefficient of restitution c_r, and when delta'_0
-is taken.  Each is a file of this folder; a new one is found by lying here.
+*restitution law* says which alpha_r belongs to a coefficient of restitution c_r, and which rate is
+taken: that of the onset, or one that is no matter of this contact, so that the force has no memory.
+Each is a file of this folder; a new one is found by lying here.
 
 Source: Hunt and Crossley (1975), Journal of Applied Mechanics 42, 440-445.
 """
@@ -54,7 +55,7 @@ class RestitutionLaw(NamedTuple):
     """c_r -> alpha_r; infinite where there is none."""
     source: str
     hysteresis: Callable[[bool, float, float, float, float], float] = frozen_at_onset
-    """chi/K now, see `frozen_at_onset`."""
+    """chi/K now, see `frozen_at_onset`; 0 while open."""
 
 
 def hysteresis(
