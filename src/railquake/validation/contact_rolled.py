@@ -50,7 +50,7 @@ def shift(displacement: float, roll: float) -> float:
 
 
 def deepest(displacement: float, roll: float, load: float) -> tuple[float, float, float]:
-    """Share, approach (mm) and angle (degrees, positive on the flange) of the patch that bears most.
+    """Share, approach (mm) and angle (degrees, positive on the flange) of the patch in most load.
 
     Displacement in m, roll in rad, load in N.
     """
