@@ -18,7 +18,7 @@ demo: $(VENV)/.ready-run
 	$(BIN)/railquake demo --out $(DEMO)
 
 test: $(VENV)/.ready-dev
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadscope --no-loadscope-reorder
 
 lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .
