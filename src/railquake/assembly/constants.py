@@ -9,6 +9,7 @@ import numpy as np
 
 from railquake.assembly.geometry import ROLL_AXIS, SHIFT_AXIS
 from railquake.assembly.joints import fill_joints
+from railquake.assembly.momentum import fill_momentum
 from railquake.errors import InputError
 from railquake.inputs.profile import flange_tip
 from railquake.march.order import kernel_order
@@ -69,6 +70,7 @@ def constants_of(
     )
     fill_vehicle(q, vehicle, layout)
     _fill_wheelrail(q, scenario.wheelrail, scenario.vehicle.speed, layout)
+    fill_momentum(q, scenario.vehicle, scenario.wheelrail.rolling_radius, layout)
     fill_structure(q, structure, layout)
     fill_substeps(q, 1, layout)
     return q[:, None]
