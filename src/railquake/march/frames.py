@@ -12,6 +12,7 @@ import numpy as np
 from railquake.march.contact import look_at_flanges
 from railquake.march.events import detect_events, release_train
 from railquake.march.ground import begin_frame
+from railquake.march.momentum import close_momentum, open_momentum
 from railquake.march.peaks import OSCILLATORS, filter_forces, swing_on_track
 from railquake.march.rows import constant, size, state
 from railquake.march.step import step
@@ -62,6 +63,8 @@ def run_frame(S: Array, Q: Array, geometry: Geometry, lanes: int, refresh: int) 
     """
     steps = int(Q[constant.FRAME_STEPS, 0])
     substeps = int(Q[constant.SUBSTEPS, 0])
+    for lane in range(lanes):
+        open_momentum(S, Q, lane)
     for n in range(steps // substeps):
         if n % refresh == 0:
             look_again(S, Q, geometry, lanes)
@@ -69,6 +72,8 @@ def run_frame(S: Array, Q: Array, geometry: Geometry, lanes: int, refresh: int) 
     for lane in range(lanes):
         S[state.FRAMES, lane] += 1.0
         S[state.TIME, lane] = S[state.FRAMES, lane] * steps * Q[constant.DT, lane]
+    for lane in range(lanes):
+        close_momentum(S, Q, lane)
     for lane in range(lanes):
         filter_forces(S, Q, lane)
     for n in range(OSCILLATORS):
