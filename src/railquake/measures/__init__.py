@@ -304,6 +304,11 @@ MEASURES: tuple[Measure, ...] = (
         place=AttributeOf("audit.contact_relative"),
     ),
     Measure(
+        "contact_gain", Kind.RUN, "1", "contact’s gain", "energy gained by the contact",
+        meaning="what the contact's balance gains, over all that is dissipated; 0 where it loses",
+        place=AttributeOf("audit.contact_gain"),
+    ),
+    Measure(
         "energy_dissipated_j", Kind.RUN, "J", "dissipated", "energy dissipated",
         factor=1e-3, shown_unit="kJ", meaning="dashpots, Rayleigh damping, hinge, impact, creep",
         place=AttributeOf("audit.dissipated"),

@@ -141,6 +141,11 @@ class EnergyAudit:
         return self.contact_residual / max(self.lost_in_contact, 1e-9)
 
     @property
+    def contact_gain(self) -> float:
+        """What the contact's balance gains over all that is dissipated; 0 where it loses."""
+        return max(-self.contact_residual, 0.0) / max(self.dissipated, 1e-9)
+
+    @property
     def gravity_relative(self) -> float:
         """Gravity's work less that from the bodies' heights, over what is dissipated."""
         return (self.gravity - self.fallen) / max(self.dissipated, 1e-9)
