@@ -109,6 +109,7 @@ _PRESCRIBED: Laws = {
 _LINEAR: Laws = {
     sprung.accelerate_free: sprung.accelerate_linear,
     sprung.vehicle_energy: sprung.linear_energy,
+    sprung.stage_travel: sprung.linear_travel,
 }
 _TABLE: Laws = {
     contact.locate_cells: contact.locate_in_table,
