@@ -7,18 +7,18 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input
 SHELL  := /bin/bash
 
-.PHONY: help demo test lint format types layers docs bench bench-gpu validate mutants pins constraints clean
+.PHONY: help demo test lint format types layers docs bench bench-gpu validate mutants pins suite constraints clean
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 
 help:
-	@echo "make demo | test | lint | format | types | layers | docs | bench | bench-gpu | validate | mutants | pins | clean"
+	@echo "make demo | test | lint | format | types | layers | docs | bench | bench-gpu | validate | mutants | pins | suite | clean"
 
 demo: $(VENV)/.ready-run
 	$(BIN)/railquake demo --out $(DEMO)
 
 test: $(VENV)/.ready-dev
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadscope --no-loadscope-reorder
 
 lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .
@@ -59,6 +59,10 @@ mutants: $(VENV)/.ready-dev
 # Every pinned number, old against new; minutes.
 pins: $(VENV)/.ready-dev
 	$(BIN)/python tools/pins.py --records $(RECORDS)
+
+# The paper's suite with other cars, with half the step and by themselves: an hour on two cores.
+suite: $(VENV)/.ready-dev
+	$(BIN)/python tools/suite.py --records $(RECORDS) --halved --single
 
 # One stamp per set of packages.  Each holds when the interpreter and both lists are older than it.
 $(VENV)/.ready-run:   EXTRAS :=

@@ -13,6 +13,28 @@ def _shared_folder() -> Path:
     return Path(given) if given else Path(__file__).resolve().parents[2] / "shared"
 
 
+EACH_BY_ITSELF = ("test_suite_paper.py", "test_comparisons.py", "test_classical_cases.py",
+                  "test_pins.py", "test_whole_runs.py", "test_calibrate.py")  # fmt: skip
+"""Long files whose tests share nothing but what is on disk."""
+
+
+def pytest_xdist_make_scheduler(config, log):
+    """What a file's tests share, such as a compiled kernel, is made in one worker.
+
+    So its tests stay together, but for those of long files that share nothing.
+    """
+    if config.getvalue("dist") != "loadscope":
+        return None
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByFile(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            file = nodeid.split("::")[0]
+            return nodeid if file.endswith(EACH_BY_ITSELF) else file
+
+    return ByFile(config, log)
+
+
 @pytest.fixture(scope="session")
 def shared() -> Path:
     """Folder of reference data beside the checkout; without it the test skips, but not in CI."""

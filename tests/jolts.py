@@ -85,12 +85,17 @@ def push(name):
 def pushed(name, dt=DT, sign=1.0, frame=FRAME, **pier):
     """The system with the push, and with the forces and accelerations that belong to it."""
     system = rq.assemble(jolt(name, dt, sign, frame, **pier))
+    return set_off(system, sign * push(name)[9:18], sign * push(name)[18:27])
+
+
+def set_off(system, moved, speeds):
+    """A system whose bodies are moved and thrown, with the forces and accelerations of that."""
     s, q, matrices = system.start.copy(), system.constants, system.vehicle
     state, constant = system.layout.state, system.layout.constant
     place = np.argsort(kernel_order(9))
     x, v, a = state.VEHICLE_X + place, state.VEHICLE_V + place, state.VEHICLE_A + place
-    s[x, 0] += sign * push(name)[9:18]
-    s[v, 0] += sign * push(name)[18:27]
+    s[x, 0] += moved
+    s[v, 0] += speeds
     stage(system, find_contact_forces)(s, q, system.geometry)
     for old, new in (
         (state.TRACK_FORCE_OLD, state.TRACK_FORCE),

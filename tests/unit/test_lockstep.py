@@ -84,6 +84,10 @@ def test_rows_are_those_of_single_runs(rows):
         for key in ("flange_contact_first_s", "uplift_first_s"):
             assert rows[index][key] == pytest.approx(single[key], abs=2e-3), (index, key)
         assert abs(rows[index]["energy_residual"]) < 1e-3
+        for row in (single, rows[index]):
+            assert row["linear_momentum_residual"] < 1e-4, index
+            assert row["angular_momentum_residual"] < 1e-4, index
+            assert abs(row["gravity_work_residual"]) < 1e-9, index
 
 
 def test_an_impossible_scenario_is_a_row_and_the_others_finish():

@@ -10,6 +10,7 @@ from suite_files import LEVELS, RECORDS, record_path, scale_factor
 WHOLE = 1e-3
 CONTACT_GAIN = 0.01
 CONTACT = 0.03
+MOMENTUM = 1e-4  # linear and angular, over the largest impulse
 
 
 @pytest.mark.parametrize("record", RECORDS)
@@ -26,12 +27,19 @@ def test_eight_runs_of_a_record_end_well_balance_and_agree_in_lockstep(shared, r
             assert row["status"] in ("safe", "onset", "derailed"), name
             assert abs(row["energy_residual"]) < WHOLE, name
             assert -CONTACT_GAIN < row["contact_energy_residual"] < CONTACT, name
+            assert keeps_momentum(row), name
     # the lockstep engine takes shortcuts; at most one of the eight may differ by more than its bar
     together = dict(rq.simulate_many(cases, threads=1))
     assert sum(differs(row, together[k]) for k, row in enumerate(rows)) <= 1
     for row in together.values():
         assert abs(row["energy_residual"]) < WHOLE
         assert -CONTACT_GAIN < row["contact_energy_residual"] < CONTACT
+        assert keeps_momentum(row)
+
+
+def keeps_momentum(row):
+    """Whether rails, ground and gravity explain the car's momentum in both directions, and roll."""
+    return max(row["linear_momentum_residual"], row["angular_momentum_residual"]) < MOMENTUM
 
 
 def differs(single, abreast):

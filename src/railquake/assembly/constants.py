@@ -9,6 +9,7 @@ import numpy as np
 
 from railquake.assembly.geometry import DISPLACEMENT_AXIS, ROLL_AXIS, running_circle
 from railquake.assembly.joints import fill_joints
+from railquake.assembly.momentum import fill_momentum
 from railquake.errors import InputError
 from railquake.inputs.profile import flange_tip
 from railquake.march.order import kernel_order
@@ -79,6 +80,7 @@ def constants_of(
     # contact is near the running circle of its rail
     has_gravity = vehicle.is_finite or len(vehicle.bodies) == 1
     q[constant.BODY_LIMIT] = math.inf if has_gravity else q[constant.RAIL_CENTRE]
+    fill_momentum(q, scenario.vehicle, scenario.wheelrail.rolling_radius, layout)
     fill_structure(q, structure, layout)
     fill_substeps(q, 1, layout)
     return q[:, None]

@@ -82,6 +82,8 @@ def _print_row(row: dict[str, Any]) -> None:
         ("energy_residual", "of what is dissipated"),
     ):
         typer.echo(_line(named(key), row[key], remark))
+    if row["warnings"] is not None:
+        typer.echo("\n".join(f"{'warning':24} {text}" for text in row["warnings"].split("; ")))
     rate = 1e-6 * row["steps_per_s"]
     typer.echo(f"{'steps':24} {row['steps']} at {rate:.2f} million a second")
 

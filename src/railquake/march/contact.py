@@ -21,6 +21,7 @@ from railquake.physics.contact_table import (
     patch_in_cell,
     running_point,
 )
+from railquake.physics.momentum import Pair, patch_moment
 from railquake.physics.patch import Contact, WheelMotion, closing_rate, patch_forces
 from railquake.physics.profiles import POSITIVE, Geometry, Patch, zone_contact
 
@@ -219,6 +220,7 @@ def clear_forces(S: Array, lane: int) -> None:
     """Nothing of what the patches will add up."""
     S[state.FORCE_PSI, lane] = 0.0
     S[state.HERTZ_ENERGY, lane] = 0.0
+    S[state.PATCH_MOMENTS, lane] = 0.0
     S[state.AXLE_MOMENT, lane] = 0.0
     S[state.AXLE_DAMPING, lane] = 0.0
     for k in range(KINDS):
@@ -332,6 +334,9 @@ def add_patch(
     S[state.AXLE_DAMPING, lane] += forces.axle_damping
     S[state.LOAD + side, lane] -= forces.z
     S[state.LATERAL + side, lane] -= sign * forces.y
+    S[state.PATCH_MOMENTS, lane] += sign * patch_moment(
+        found, sign * S[state.SHIFT, lane], motion.height, Pair(forces.y, forces.z)
+    )
 
 
 def add_wheels(S: Array, Q: Array, lane: int) -> None:

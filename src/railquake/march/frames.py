@@ -13,6 +13,7 @@ from railquake.march.climb import measure_climb
 from railquake.march.contact import look_at_flanges
 from railquake.march.events import detect_events, release_train
 from railquake.march.ground import begin_frame
+from railquake.march.momentum import close_momentum, open_momentum
 from railquake.march.peaks import OSCILLATORS, filter_forces, measure_bodies, swing_on_track
 from railquake.march.rows import constant, size, state
 from railquake.march.step import step
@@ -63,6 +64,8 @@ def run_frame(S: Array, Q: Array, geometry: Geometry, lanes: int, refresh: int) 
     """
     steps = int(Q[constant.FRAME_STEPS, 0])
     substeps = int(Q[constant.SUBSTEPS, 0])
+    for lane in range(lanes):
+        open_momentum(S, Q, lane)
     for n in range(steps // substeps):
         if n % refresh == 0:
             look_again(S, Q, geometry, lanes)
@@ -70,6 +73,8 @@ def run_frame(S: Array, Q: Array, geometry: Geometry, lanes: int, refresh: int) 
     for lane in range(lanes):
         S[state.FRAMES, lane] += 1.0
         S[state.TIME, lane] = S[state.FRAMES, lane] * steps * Q[constant.DT, lane]
+    for lane in range(lanes):
+        close_momentum(S, Q, lane)
     for lane in range(lanes):
         filter_forces(S, Q, lane)
     measure_climb(S, Q, lanes)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from railquake.march import sprung
+from railquake.march import momentum, sprung
 from railquake.march.packing import reader
 from railquake.march.rows import Joined, constant, size, state
 from railquake.physics.elementary import sin_cos
@@ -30,6 +30,7 @@ from railquake.physics.joint import (
     spring_moment,
     stop_force,
 )
+from railquake.physics.momentum import counted_moment, counted_place, true_moment, true_place
 from railquake.physics.vehicle import free_acceleration
 
 __all__ = ["joined_laws"]
@@ -300,6 +301,10 @@ def joined_laws(joined: Joined) -> dict[Callable[..., Any], Callable[..., Any]]:
         sprung.accelerate_free: _made("accelerate_joined", "S, Q, lanes", accelerate),
         sprung.vehicle_energy: _made("joined_energy", "S, Q, lane", energy),
         sprung.stage_travel: finite_travel,
+        counted_place: true_place,
+        counted_moment: true_moment,
+        momentum.stiffness_of_ends: momentum.no_couple,
+        momentum.damping_of_ends: momentum.nothing_held,
     }
 
 

@@ -138,6 +138,16 @@ _VEHICLE = (
     row("STAGE_GAPS", "m", "d_0 of each stage, y and z", rows=2 * len(STAGES)),
 )
 
+# from the inputs by themselves: nothing that moves a body reads them (`momentum`)
+_MOMENTUM = (
+    row("AUDIT_AXLES", "1", "wheels a side that the section stands for"),
+    row("AUDIT_MASS", "kg", "of each body", rows="BODIES"),
+    row("AUDIT_INERTIA", "kg m2", "of each body", rows="BODIES"),
+    row("AUDIT_HEIGHT", "m", "of each body above the track's origin at rest", rows="BODIES"),
+    row("COUPLE_STIFFNESS", "N or N m", "of a linear car's springs with ends apart", rows="DOFS"),
+    row("COUPLE_DAMPING", "N s or N m s", "of its dashpots with ends apart", rows="DOFS"),
+)
+
 # of a car with finite rotations (`joints`), one after the other
 _JOINTS = (
     row("TIES", "m", "points of each element (`joint.Tie`)", rows="TIE_ROWS"),
@@ -156,6 +166,7 @@ CONSTANT_GROUPS: dict[str, tuple[Row, ...]] = {
     "contact": _CONTACT,
     "measures": _MEASURES,
     "vehicle": _VEHICLE,
+    "momentum": _MOMENTUM,
     "joints": _JOINTS,
 }
 CONSTANT_ROWS: tuple[Row, ...] = tuple(row for group in CONSTANT_GROUPS.values() for row in group)

@@ -246,6 +246,61 @@ _ENERGY = (
     row("HERTZ_LEFT", "J", "Hertz energy that goes with it"),
 )
 
+# of the whole car, in ground axes and about the place of the track's origin at rest (`momentum`)
+_MOMENTUM = (
+    row("PATCH_MOMENTS", "N m", "of the rails on one wheelset, about the track's origin"),
+    block(
+        "RAILS",
+        "force of the rails on the car, as its patches give it",
+        (("RAILS_Y", "N", "right"), ("RAILS_Z", "N", "down"), ("RAILS_PHI", "N m", "roll")),
+        released=True,
+    ),
+    block(
+        "RAILS_IMPULSE",
+        "impulse of the rails, the last force counted whole",
+        (
+            ("PUSHED_Y", "N s", "right"),
+            ("PUSHED_Z", "N s", "down"),
+            ("PUSHED_PHI", "N m s", "roll"),
+        ),
+    ),
+    block(
+        "SHAKEN",
+        "impulse of the effective forces of the ground",
+        (
+            ("SHAKEN_Y", "N s", "right"),
+            ("SHAKEN_Z", "N s", "down"),
+            ("SHAKEN_PHI", "N m s", "roll"),
+        ),
+    ),
+    block(
+        "WEIGHED",
+        "impulse of gravity",
+        (("WEIGHED_Z", "N s", "down"), ("WEIGHED_PHI", "N m s", "roll")),
+    ),
+    row("OMITTED", "N m s", "impulse of gravity's moment that the car's equations leave out"),
+    row("COUPLED_PHI", "N m s", "impulse of springs with ends at two heights; of a linear car"),
+    block(
+        "UNEXPLAINED",
+        "momentum less impulses at the frame's begin",
+        (
+            ("UNEXPLAINED_Y", "N s", "right"),
+            ("UNEXPLAINED_Z", "N s", "down"),
+            ("UNEXPLAINED_PHI", "N m s", "roll"),
+        ),
+    ),
+    block(
+        "MOMENTUM_LEFT",
+        "what the impulses do not explain, added up over the frames",
+        (("LEFT_Y", "N s", "right"), ("LEFT_Z", "N s", "down"), ("LEFT_PHI", "N m s", "roll")),
+    ),
+    row("PEAK_LINEAR_LEFT", "N s", "the largest of that along y or z"),
+    row("PEAK_ANGULAR_LEFT", "N m s", "the largest of that in roll"),
+    row("PEAK_IMPULSE", "N s", "largest impulse, the rails' without the weight"),
+    row("PEAK_TURNING", "N m s", "largest impulse of a moment"),
+    row("PEAK_OMITTED", "N m s", "largest impulse of the moment that is left out"),
+)
+
 _FRAME = (
     block(
         "SUM",
@@ -350,6 +405,7 @@ _BEFORE = {
     "forces": _FORCES,
     "suspension between its evaluations": _SUSPENSION,
     "energy": _ENERGY,
+    "momentum": _MOMENTUM,
 }
 _AFTER = {"frame": _FRAME, "prescribed track": _PRESCRIBED, "vehicle": _VEHICLE, "joints": _JOINTS}
 

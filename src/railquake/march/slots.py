@@ -12,13 +12,19 @@ from dataclasses import dataclass
 from typing import Any
 
 from railquake.laws import CREEP_LAWS, HINGE_LAWS, RESTITUTION_LAWS, Family
-from railquake.march import contact, frames, ground, sprung, structure, track
+from railquake.march import contact, frames, ground, momentum, sprung, structure, track
 from railquake.march.joints import joined_laws
 from railquake.march.packing import reader, writer
 from railquake.march.rows import UNJOINED, Joined
 from railquake.physics import creep, elementary, hinge, impact
 from railquake.physics.creep import CreepLaw
 from railquake.physics.hinge import HingeLaw
+from railquake.physics.momentum import (
+    counted_moment,
+    counted_place,
+    moment_undeformed,
+    place_undeformed,
+)
 
 __all__ = ["SLOTS", "Slot", "chosen", "joining", "solving"]
 
@@ -110,6 +116,10 @@ _LINEAR: Laws = {
     sprung.accelerate_free: sprung.accelerate_linear,
     sprung.vehicle_energy: sprung.linear_energy,
     sprung.stage_travel: sprung.linear_travel,
+    counted_place: place_undeformed,
+    counted_moment: moment_undeformed,
+    momentum.stiffness_of_ends: momentum.couple_of_ends,
+    momentum.damping_of_ends: momentum.held_by_ends,
 }
 _TABLE: Laws = {
     contact.locate_cells: contact.locate_in_table,

@@ -18,6 +18,7 @@ from railquake.march.contact import (
     press_patch,
 )
 from railquake.march.ground import move_ground
+from railquake.march.momentum import gather_rails, push_by_rails, push_on_bodies
 from railquake.march.peaks import measure_contact, measure_structure
 from railquake.march.rows import size
 from railquake.march.sprung import (
@@ -145,6 +146,8 @@ def accelerate_bodies(S: Array, Q: Array, lanes: int) -> None:
     """Accelerations of all bodies, the contact forces on the wheelset left out."""
     for lane in range(lanes):
         work_on_bodies(S, Q, lane)
+    for lane in range(lanes):
+        push_on_bodies(S, Q, lane)
     accelerate_free(S, Q, lanes)
     for lane in range(lanes):
         lose_to_dashpots(S, Q, lane)
@@ -154,6 +157,9 @@ def accelerate_bodies(S: Array, Q: Array, lanes: int) -> None:
 
 def accelerate_wheelset(S: Array, Q: Array, lanes: int) -> None:
     """The contact forces on the wheelset, and what is measured of them."""
+    for lane in range(lanes):
+        gather_rails(S, Q, lane)
+        push_by_rails(S, Q, lane)
     for lane in range(lanes):
         add_wheels(S, Q, lane)
         push_wheelset(S, Q, lane)
@@ -171,6 +177,7 @@ def find_contact_forces(S: Array, Q: Array, geometry: Geometry) -> None:
     for side in range(2):
         for zone in range(2):
             press_patch(S, Q, geometry, side, zone, 0)
+    gather_rails(S, Q, 0)
     add_wheels(S, Q, 0)
     load_track(S, Q, 0)
 

@@ -230,6 +230,43 @@ MEASURES: tuple[Measure, ...] = (
         place=AttributeOf("audit.dissipated"),
     ),
     Measure(
+        "gravity_work_residual", Kind.RUN, "1", "gravity’s residual", "residual of gravity's work",
+        meaning="gravity's work less that from the bodies' heights, over what is dissipated",
+        place=AttributeOf("audit.gravity_relative"),
+    ),
+    Measure(
+        "linear_momentum_residual", Kind.RUN, "1", "momentum’s residual", "residual of momentum",
+        meaning="what rails, ground and gravity do not explain of the car's momentum, sideways or "
+        "upright, at its largest, over the largest impulse",
+        place=AttributeOf("momentum.linear_relative"),
+    ),
+    Measure(
+        "angular_momentum_residual", Kind.RUN, "1", "angular residual",
+        "residual of angular momentum",
+        meaning="the same of its angular momentum about the track's origin at rest, over the "
+        "largest impulse of a moment; of a linear car by its own equations",
+        place=AttributeOf("momentum.angular_relative"),
+    ),
+    Measure(
+        "omitted_gravity_moment", Kind.RUN, "1", "omitted moment", "gravity's moment left out",
+        meaning="impulse of the moment of gravity that a linear car's equations leave out, at its "
+        "largest, over the largest that they have; 0 with `kinematics = \"finite\"`",
+        place=AttributeOf("momentum.omitted_relative"),
+    ),
+    Measure(
+        "forward_input_share", Kind.RUN, "1", "forward input", "what forward motion pays",
+        meaning="work by spin and against longitudinal creepage that the train's forward motion "
+        "pays, over what creep loses",
+        place=AttributeOf("audit.forward_share"),
+    ),
+    Measure(
+        "warnings", Kind.RUN, "", "warnings", "warnings",
+        value=str, optional=True,
+        meaning="a sentence for each bar that the audits cross, with semicolons between; see "
+        "[energy](theory/energy.md)",
+        place=WorkedOut("warnings"),
+    ),
+    Measure(
         "steps", Kind.RUN, "1", "steps", "time steps marched",
         value=int, meaning="time steps marched", place=AttributeOf("steps"),
     ),

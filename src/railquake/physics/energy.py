@@ -85,6 +85,8 @@ class EnergyAudit:
     ----------
     ground, gravity : float
         Work of the effective ground forces and of gravity.
+    fallen : float
+        The latter once more, from the bodies' heights at both ends.
     kinetic, elastic : float
         Change of kinetic energy, and of elastic energy of suspension and column.
     hinge, rayleigh, dashpots : float
@@ -102,6 +104,7 @@ class EnergyAudit:
 
     ground: float
     gravity: float
+    fallen: float
     kinetic: float
     elastic: float
     hinge: float
@@ -136,3 +139,13 @@ class EnergyAudit:
     def contact_relative(self) -> float:
         """Contact balance's residual over what impact and creep lose."""
         return self.contact_residual / max(self.lost_in_contact, 1e-9)
+
+    @property
+    def gravity_relative(self) -> float:
+        """Gravity's work less that from the bodies' heights, over what is dissipated."""
+        return (self.gravity - self.fallen) / max(self.dissipated, 1e-9)
+
+    @property
+    def forward_share(self) -> float:
+        """What forward motion pays for, by spin and longitudinal creepage, over creep's loss."""
+        return (abs(self.spin) + abs(self.forward)) / max(self.creep, 1e-9)

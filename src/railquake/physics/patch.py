@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from railquake.physics.axle import distance_from_axle
-from railquake.physics.creep import bound_on_flange, bound_on_tread, linear_force, magnitude
+from railquake.physics.creep import bound_on_flange, bound_on_tread, linear_force
 from railquake.physics.impact import hysteresis, normal_force
 from railquake.physics.profiles import Patch
 
@@ -20,9 +20,6 @@ __all__ = ["Contact", "PatchForces", "WheelMotion", "closing_rate", "patch_force
 
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
-
-
-TINY = 1e-9  # N
 
 
 class WheelMotion(NamedTuple):
@@ -125,7 +122,6 @@ def patch_forces(
         force = bound_on_flange(linear, limit, patch.log_ratio, table)
     else:
         force = bound_on_tread(linear, limit, patch.log_ratio, table)
-    share = (magnitude(force) + TINY) / (magnitude(linear) + TINY)  # of Kalker's slope
     down = normal * cos_gamma
     across = (force.creep + force.spin) * cos_gamma
     return PatchForces(
@@ -139,5 +135,5 @@ def patch_forces(
         force.spin * sliding,
         -force.along * slip,
         -radius * force.along,
-        radius * radius * share * f11 * contact.inverse_speed,
+        radius * radius * force.share * f11 * contact.inverse_speed,
     )

@@ -9,6 +9,8 @@ from railquake.findings import Answer, Finding, answer_questions
 from railquake.report.context import ReportSection, Text
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from railquake.report.context import Context
 
 __all__ = ["Answers", "Findings", "section"]
@@ -64,11 +66,36 @@ def _counts(context: Context) -> str:
     names = {"safe": "stay safe", "onset": "reach the onset of slide-off and stay",
              "derailed": "derail", "not converged": "do not converge", "diverged": "diverge",
              "failed": "fail"}  # fmt: skip
-    listed = ", ".join(f"{counts[name]:,} {names[name]}" for name in order if name in counts)
+    listed = ", ".join(
+        f"{counts[name]:,} {names[name]}" + (_modes(table) if name == "derailed" else "")
+        for name in order
+        if name in counts
+    )
     missing = context.results.missing
     unfinished = f" {missing:,} runs of the study have not finished." if missing > 0 else ""
     records = table["record"].nunique()
     return (
         f"{len(table):,} runs under {records} ground motion{'s' if records != 1 else ''}: "
-        f"{listed}.{unfinished}"
+        f"{listed}.{unfinished}{_beyond(table)}"
+    )
+
+
+def _modes(table: pd.DataFrame) -> str:
+    """How the derailed runs derailed, in parentheses."""
+    modes = table["derailment_mode"].dropna().astype(str).str.split().str[0].value_counts()
+    said = ", ".join(f"{count:,} {mode}" for mode, count in modes.items())
+    return f" ({said})" if said else ""
+
+
+def _beyond(table: pd.DataFrame) -> str:
+    """How often the car was where its model ends."""
+    if "beyond_model" not in table or not table["beyond_model"].notna().any():
+        return ""
+    beyond = table[table["beyond_model"].notna()]
+    reasons = beyond["beyond_model"].value_counts()
+    said = "; ".join(f"{count:,}: {reason}" for reason, count in reasons.items())
+    derailed = int((beyond["status"] == "derailed").sum())
+    return (
+        f" In {len(beyond):,} of them the car has been where its model ends ({said}); what follows "
+        f"there is not to be believed, and {derailed:,} of them derail."
     )

@@ -13,6 +13,7 @@ from railquake.errors import InputError
 from railquake.measures import telling_of_the_step
 from railquake.report.chart import Chart, Panel, Points, Rule
 from railquake.report.context import ReportSection, Table, Text
+from railquake.run.doubts import BARS, FORWARD_SHARE, GAIN
 
 if TYPE_CHECKING:
     from railquake.report.context import Context
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 __all__ = ["section"]
 
 TITLE = "Can these numbers be trusted?"
-BARS = {"energy_residual": 1e-3, "contact_energy_residual": 0.03}
-GAIN = 0.01
 FLOOR = 1e-8
 
 
@@ -66,10 +65,17 @@ def _residuals(context: Context) -> Chart | None:
             )  # fmt: skip
     if not panels:
         return None
+    return Chart("energy-residuals", "Energy residuals of all runs", _said(context), tuple(panels))
+
+
+def _said(context: Context) -> str:
+    """What the audits say of all runs, in words."""
     done = context.done
     over = {
         column: np.abs(done[column].to_numpy(dtype=float)) > bar for column, bar in BARS.items()
     }
+    shares = done["forward_input_share"].to_numpy(dtype=float)
+    paid = int((shares > FORWARD_SHARE).sum())
     contact = over["contact_energy_residual"]
     lifted = contact & (done["off_rail_time_s"].to_numpy(dtype=float) > 0.0)
     gains = int((done["contact_energy_residual"].to_numpy(dtype=float) < -GAIN).sum())
@@ -93,7 +99,14 @@ def _residuals(context: Context) -> Chart | None:
             f" The {'other ' if lifted.any() else ''}{int(quiet.sum())} lift no wheel and are "
             "weakly shaken: so little is lost in the contact that the error of the step shows."
         )
-    return Chart("energy-residuals", "Energy residuals of all runs", caption, tuple(panels))
+    moved = [over[f"{kind}_momentum_residual"] for kind in ("linear", "angular")]
+    caption += (
+        f" {int((moved[0] | moved[1]).sum())} runs gain momentum or angular momentum that neither "
+        f"rails nor ground nor gravity give them. In {paid} runs spin and the train’s forward "
+        f"motion bring in more than {100 * FORWARD_SHARE:g} % of what creep loses, and no balance "
+        "sees an error in that."
+    )
+    return caption
 
 
 def _time_step(context: Context) -> list[Any]:

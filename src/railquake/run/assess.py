@@ -28,6 +28,7 @@ from railquake.measures import (
 from railquake.physics import derailment
 from railquake.physics.oscillator import pseudo_velocity
 from railquake.run import spectral
+from railquake.run.doubts import doubts
 
 if TYPE_CHECKING:
     from railquake.run.response import Response
@@ -197,6 +198,7 @@ _WORKED_OUT: Mapping[str, Callable[[Response], Any]] = {
     "time_step_error": _time_step_error,
     "track_intensity": _track_intensity,
     "uplift_ratio": _uplift_ratio,
+    "warnings": lambda response: "; ".join(doubts(response)) or None,
     "versions": lambda _: versions(),
     "wheel_unloading": _wheel_unloading,
     "stop_use": _stop_use,

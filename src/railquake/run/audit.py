@@ -1,4 +1,4 @@
-"""The energy audit of a run, from its rows."""
+"""The audits of a run, from its rows."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ import numpy as np
 
 from railquake.march.order import kernel_order
 from railquake.physics.energy import EnergyAudit, Works, contact_residual, whole_residual
+from railquake.physics.momentum import MomentumAudit
+from railquake.physics.vehicle import GRAVITY
 
 if TYPE_CHECKING:
     from railquake.assembly import System
 
-__all__ = ["audit"]
+__all__ = ["audit", "momentum_audit"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -70,11 +72,33 @@ def audit(system: System, end: Array) -> EnergyAudit:
         spin=float(last[state.SPIN_INPUT]),
         forward=float(last[state.FORWARD_INPUT]),
     )
+    # how far each body has fallen; one that has left stays where it was then
+    fallen = (last - first)[state.VEHICLE_X + 2 * len(order) // 3 :][: len(order) // 3]
     return EnergyAudit(
+        fallen=GRAVITY * float(q[constants["AUDIT_MASS"]] @ fallen),
         kinetic=kinetic,
         elastic=elastic,
         hertz=hertz,
         whole_residual=whole_residual(works, kinetic, elastic, structure.reaction),
         contact_residual=contact_residual(works, hertz),
         **works._asdict(),
+    )
+
+
+def momentum_audit(system: System, end: Array) -> MomentumAudit:
+    """Momentum and angular momentum of one run.
+
+    Parameters
+    ----------
+    system : System
+    end : array, shape (state rows, 1)
+    """
+    state, last = system.layout.state, end[:, 0]
+    return MomentumAudit(
+        linear_residual=float(last[state.PEAK_LINEAR_LEFT]),
+        angular_residual=float(last[state.PEAK_ANGULAR_LEFT]),
+        linear_impulse=float(last[state.PEAK_IMPULSE]),
+        angular_impulse=float(last[state.PEAK_TURNING]),
+        omitted_impulse=float(last[state.PEAK_OMITTED]),
+        mass=system.scenario.vehicle.mass,
     )

@@ -10,7 +10,9 @@ import numpy as np
 from railquake.march.order import kernel_order
 from railquake.physics.derailment import CHATTER, EVENTS, ONSET, UPLIFT
 from railquake.physics.energy import EnergyAudit
+from railquake.physics.momentum import MomentumAudit
 from railquake.run import verdict
+from railquake.run.audit import momentum_audit
 
 if TYPE_CHECKING:
     import xarray
@@ -108,6 +110,11 @@ class Response:
     def steps(self) -> int:
         """Time steps marched."""
         return (len(self.frames) - 1) * self.system.frame_steps
+
+    @property
+    def momentum(self) -> MomentumAudit:
+        """Whether what pushes the train is what moves it."""
+        return momentum_audit(self.system, self.end)
 
     @property
     def status(self) -> str:

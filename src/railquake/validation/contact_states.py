@@ -23,6 +23,7 @@ __all__ = [
     "SETTINGS",
     "SOURCE",
     "State",
+    "departure",
     "geometry",
     "lobe_case",
     "numbers",
@@ -40,6 +41,8 @@ definitions, within 0.05 mm of them."""
 
 CONFORMAL = 0.4
 """Departure from a parabola, above which a contact is called nearly conformal; see `departure`."""
+NEAR = 0.012
+"""From the contact's place, m: where the wheel's outline is looked at."""
 HERTZIAN_TOLERANCE = 0.05
 """Of the approach, where the contact is not nearly conformal; the stated ones are within it."""
 
@@ -99,7 +102,7 @@ def _zones(pair: Geometry) -> tuple[tuple[int, int], tuple[int, int]]:
 
 
 def patches(
-    shift: float, load: float, flange_offset: float = 0.0
+    shift: float, load: float, flange_offset: float = 0.0, roll: float = 0.0
 ) -> list[tuple[float, float, float, float]]:
     """Share, approach (m), place (m) and angle (rad) of the left wheel's tread and flange.
 
@@ -113,12 +116,14 @@ def patches(
         Total normal force, N.
     flange_offset : float
         Height by which the flange's side of the profiles is moved apart, m.
+    roll : float
+        Of the wheelset, left side down, rad.
     """
     pair = geometry()
     zones = []
     for (first, last), offset in zip(_zones(pair), (0.0, flange_offset), strict=True):
-        found = zone_contact(-shift, 0.0, first, last, pair)
-        place = zone_extremum(-shift, 0.0, first, last, pair)[3]
+        found = zone_contact(-shift, roll, first, last, pair)
+        place = zone_extremum(-shift, roll, first, last, pair)[3]
         zones.append((found.gap + offset, math.atan(found.slope), found.stiffness, place))
 
     def forces(height: float) -> list[float]:
@@ -132,7 +137,7 @@ def patches(
     ]
 
 
-def departure(shift: float, load: float) -> float:
+def departure(shift: float, load: float, roll: float = 0.0) -> float:
     """How far the gap under Hertz' ellipse is from the parabola that Hertz assumes.
 
     The largest difference over the ellipse's width between the undeformed gap of the profiles,
@@ -142,7 +147,7 @@ def departure(shift: float, load: float) -> float:
     pair = geometry()
     modulus = effective_modulus(209.92e9, 0.28)
     deepest = min(
-        (zone_extremum(-shift, 0.0, first, last, pair) for first, last in _zones(pair)),
+        (zone_extremum(-shift, roll, first, last, pair) for first, last in _zones(pair)),
         key=lambda zone: zone[0],
     )
     gap, slope, _, place, _, lateral, rolling, _ = deepest
@@ -152,7 +157,11 @@ def departure(shift: float, load: float) -> float:
     along = np.linspace(-half_width, half_width, 201)
     cosine = 1.0 / math.hypot(1.0, slope)
     y = place + along * cosine
-    wheel = PchipInterpolator(pair.wheel_y, pair.wheel_z)
+    sine, cosine_of_roll = math.sin(roll), math.cos(roll)
+    wheel_y = pair.wheel_y * cosine_of_roll - pair.wheel_z * sine
+    wheel_z = pair.wheel_y * sine + pair.wheel_z * cosine_of_roll
+    near = np.abs(wheel_y - shift - place) < NEAR
+    wheel = PchipInterpolator(wheel_y[near], wheel_z[near])
     rail = [
         rail_at(at, pair.rail_start, pair.rail_step, pair.rail_z, pair.rail_slope)[0] for at in y
     ]

@@ -21,6 +21,7 @@ COMPARISONS: tuple[str, ...] = (
     "contact_approach",
     "contact_place",
     "contact_lobes",
+    "contact_rolled",
     "normal_law",
     "kalker_coefficients",
     "creep_laws",

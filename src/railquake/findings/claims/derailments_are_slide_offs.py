@@ -32,7 +32,7 @@ def slide_offs(evidence: Evidence) -> Verdict:
         return Verdict(verdict, words)
     return Verdict(
         verdict, words,
-        "A run counts as overturned once the vehicle’s centre of gravity is beyond a rail while "
-        "the onset holds; without bump stops the car body sways further than a real one, and may "
-        "bring it there before the flange tip has crossed the rail.",
+        "A wheelset slides off or climbs where a flange crosses its rail or the bearing wheel is "
+        "displaced by more than the pair’s limit; it has overturned at a roll of 30° with a wheel "
+        "still bearing. A linear car has no gravity to tip it over.",
     )  # fmt: skip

@@ -30,6 +30,7 @@ from railquake.laws import CREEP_LAWS
 
 __all__ = [
     "CREEP_LAWS",
+    "BoundedForce",
     "CreepLaw",
     "LawTable",
     "LinearForce",
@@ -47,11 +48,20 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 
 
 class LinearForce(NamedTuple):
-    """Kalker's linear force on the wheel by its causes, N; or the same once friction bounds it."""
+    """Kalker's linear force on the wheel by its causes, N."""
 
     along: float  # F_x, by longitudinal creepage
     creep: float  # F_y, by lateral creepage
     spin: float  # F_y, by spin
+
+
+class BoundedForce(NamedTuple):
+    """The same once friction bounds it."""
+
+    along: float
+    creep: float
+    spin: float
+    share: float  # its magnitude over the linear force's: what is left of Kalker's slope
 
 
 class LawTable(NamedTuple):
@@ -72,7 +82,7 @@ class CreepLaw(NamedTuple):
     saturation: Callable[[float, float], float] | None
     """(magnitude of the linear force, mu N) -> factor in (0, 1] by which all of it is reduced."""
     source: str
-    bound: Callable[[LinearForce, float, float, Array], LinearForce] | None = None
+    bound: Callable[[LinearForce, float, float, Array], BoundedForce] | None = None
     """(linear force, mu N, log(a/b), table) -> force, instead of `saturation`."""
     table: LawTable | None = None
     """What ``bound`` reads."""
@@ -100,9 +110,9 @@ def magnitude(force: LinearForce) -> float:
     return math.sqrt(force.along * force.along + across * across)
 
 
-def reduced(force: LinearForce, factor: float) -> LinearForce:
+def reduced(force: LinearForce, factor: float) -> BoundedForce:
     """The force with all its parts multiplied."""
-    return LinearForce(factor * force.along, factor * force.creep, factor * force.spin)
+    return BoundedForce(factor * force.along, factor * force.creep, factor * force.spin, factor)
 
 
 def saturation(linear: float, limit: float) -> float:
@@ -120,7 +130,7 @@ def flange_saturation(linear: float, limit: float) -> float:
 
 def bound_on_tread(
     linear: LinearForce, limit: float, log_ratio: float, table: Array
-) -> LinearForce:
+) -> BoundedForce:
     """Slot of the creep law: the force where friction gives ``limit``, its direction kept.
 
     Parameters
@@ -138,14 +148,14 @@ def bound_on_tread(
 
 def bound_on_flange(
     linear: LinearForce, limit: float, log_ratio: float, table: Array
-) -> LinearForce:
+) -> BoundedForce:
     """Slot of the flange's creep law; see `bound_on_tread`."""
     return reduced(linear, flange_saturation(magnitude(linear), limit))
 
 
 def bounded_force(
     law: CreepLaw, linear: LinearForce, limit: float, log_ratio: float, table: Array
-) -> LinearForce:
+) -> BoundedForce:
     """What a law by itself makes of a linear force; parameters as of `bound_on_tread`."""
     if law.bound is not None:
         return law.bound(linear, limit, log_ratio, table)

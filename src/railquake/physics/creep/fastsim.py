@@ -32,7 +32,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from railquake.physics.creep import CreepLaw, LawTable, LinearForce, magnitude, reduced
+from railquake.physics.creep import (
+    BoundedForce,
+    CreepLaw,
+    LawTable,
+    LinearForce,
+    magnitude,
+    reduced,
+)
 from railquake.physics.creep.kalker import LARGEST_A_OVER_B, kalker_coefficients
 from railquake.physics.elementary import floor_of, larger_of
 
@@ -163,7 +170,7 @@ def along_spin(table: Array, at: int, w: float, w_spin: float) -> tuple[float, f
     return between(w_spin, along_lateral(table, at, w), along_lateral(table, following, w))
 
 
-def bound(linear: LinearForce, limit: float, log_ratio: float, table: Array) -> LinearForce:
+def bound(linear: LinearForce, limit: float, log_ratio: float, table: Array) -> BoundedForce:
     """The force by the table; what lateral creepage does of it is reduced as the whole is.
 
     Mirrored creepages give mirrored forces, so the table has one sign of spin and of longitudinal
@@ -202,7 +209,7 @@ def bound(linear: LinearForce, limit: float, log_ratio: float, table: Array) -> 
     y = side * limit * within * y
     whole = math.sqrt(x * x + y * y)
     creeping = reduced(linear, whole / max(magnitude(linear), whole, 1e-30))
-    return LinearForce(x, creeping.creep, y - creeping.creep)
+    return BoundedForce(x, creeping.creep, y - creeping.creep, creeping.share)
 
 
 LAW = CreepLaw(
