@@ -26,7 +26,7 @@ BEFORE = {
     "inputs/vehicle.py": "class Vehicle(FromPreset)",
     "assembly/vehicle.py": "    return VehicleMatrices(names",
     "inputs/support.py": "Support = Annotated[",
-    "measures/__init__.py": '    Measure(\n        "flange_clearance_peak_m"',
+    "measures/train.py": '    Measure(\n        "flange_clearance_peak_m"',
     "march/peaks.py": "    raise_peak(S, state.PEAK_LOAD",
 }
 # ... and what it only tells of.

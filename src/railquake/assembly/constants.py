@@ -20,6 +20,7 @@ from railquake.physics.contact_table import axis_cells
 from railquake.physics.impact import RESTITUTION_LAWS
 from railquake.physics.low_pass import low_pass_coefficients
 from railquake.physics.oscillator import oscillator_step
+from railquake.physics.sliding_mean import window_of
 from railquake.physics.vehicle import GRAVITY
 
 if TYPE_CHECKING:
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
 __all__ = ["constants_of", "fill_structure", "fill_substeps", "fill_vehicle", "frame_steps"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+
+CLIMB_LENGTH = 2.0  # m; of the mean of Y/Q, EN 14363
+SUSTAINED_TIME = 0.3  # s; of the mean of the lateral force
 
 
 def frame_steps(solver: Solver) -> int:
@@ -58,14 +62,17 @@ def constants_of(
     )
     q[constant.VEHICLE_MASS] = scenario.vehicle.mass
     q[constant.STATIC_WHEEL_LOAD] = static_wheel_load(vehicle)
+    frame = solver.step * frame_steps(solver)
     q[layout.constant_blocks["FILTER_BY"]] = low_pass_coefficients(
-        solver.lateral_force_filter, solver.step * frame_steps(solver)
+        solver.lateral_force_filter, frame
     )
+    speed = scenario.vehicle.speed
+    # a train so slow stands for the time of an earthquake
+    travelled = CLIMB_LENGTH / speed if speed >= scenario.wheelrail.speed_bound else frame
+    q[layout.constant_blocks["CLIMB_WINDOW"]] = window_of(travelled, frame)
+    q[layout.constant_blocks["SUSTAINED_WINDOW"]] = window_of(SUSTAINED_TIME, frame)
     q[layout.constant_blocks["SWING_BY"]] = np.ravel(
-        [
-            oscillator_step(period, housner.DAMPING, solver.step * frame_steps(solver))
-            for period in housner.PERIODS
-        ]
+        [oscillator_step(period, housner.DAMPING, frame) for period in housner.PERIODS]
     )
     fill_vehicle(q, vehicle, layout)
     _fill_wheelrail(q, scenario.wheelrail, scenario.vehicle.speed, layout)
@@ -90,7 +97,17 @@ def fill_vehicle(q: Array, vehicle: VehicleMatrices, layout: Layout) -> None:
     order = kernel_order(len(vehicle.mass))
     upper = upper_triangle(len(order))
     q[constant.GRAVITY] = GRAVITY
-    q[blocks["BODY_MASS"]] = vehicle.mass[0::3]
+    masses = vehicle.mass[0::3]
+    q[blocks["BODY_MASS"]] = masses
+    # the wheelset stands last; it is measured where it is alone
+    q[constant.MEASURED_BODY] = int(np.argmax(masses[:-1])) if len(masses) > 1 else 0
+    for number, stage in enumerate(vehicle.stages):
+        q[constant.STAGE_UPPER + number] = stage.upper
+        q[constant.STAGE_LOWER + number] = stage.lower
+        ties = constant.STAGE_TIES + len(stage.tie) * number
+        q[ties : ties + len(stage.tie)] = stage.tie
+        gap = constant.STAGE_GAPS + 2 * number
+        q[gap : gap + 2] = stage.gap
     q[blocks["INVERSE_MASS"]] = 1.0 / vehicle.mass[order]
     q[blocks["STIFFNESS"]] = vehicle.stiffness[np.ix_(order, order)][upper]
     q[blocks["DAMPING"]] = vehicle.damping[np.ix_(order, order)][upper]

@@ -55,7 +55,7 @@ def blank_state(vehicle: VehicleMatrices, Q: Array, layout: Layout) -> Array:
     S[state.ON_TRACK] = 1.0
     S[layout.state_blocks["NEAR"]] = 1.0
     S[layout.state_blocks["CELL_HELD"]] = -1.0  # no cell has been fetched yet
-    S[state.LOWEST_LOAD] = static_wheel_load(vehicle)
+    S[state.LOWEST_LOAD_LEFT] = S[state.LOWEST_LOAD_RIGHT] = static_wheel_load(vehicle)
     S[state.PEAK_CLEARANCE] = -1.0
     S[layout.state_blocks["FIRST_TIME"]] = -1.0
     S[state.DERAILED_TIME] = S[state.LEFT_TIME] = S[state.BEYOND_TIME] = -1.0
@@ -173,6 +173,8 @@ def start_state(
     free = -S[blocks["WHEELSET_FORCE"]] / vehicle.mass[-3:, None]
     S[blocks["WHEELSET_FREE"]] = free
     S[blocks["WHEELSET_FREE_KNOWN"]] = free
+    flanges = (S[state.PENETRATION_LEFT_FLANGE, 0], S[state.PENETRATION_RIGHT_FLANGE, 0])
+    standing_on_flange = max(flanges) > 0.0
     # low-pass filters start from the steady state
     means = (
         -S[state.FORCE_Y, 0],
@@ -180,6 +182,7 @@ def start_state(
         S[state.LOAD_RIGHT, 0],
         S[state.LATERAL_LEFT, 0],
         S[state.LATERAL_RIGHT, 0],
+        0.0 if standing_on_flange else -S[state.FORCE_Y, 0],
     )
     for block in ("FILTER_X1", "FILTER_X2", "FILTER_Y1", "FILTER_Y2"):
         S[blocks[block], 0] = means

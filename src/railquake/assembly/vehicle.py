@@ -10,6 +10,7 @@ import numpy as np
 
 from railquake.assembly.joints import NO_JOINTS, Joints, Suspension, joints_of
 from railquake.assembly.stability import fastest_rate
+from railquake.assembly.stages import Stage, stages_of
 from railquake.errors import InputError
 from railquake.march.order import lateral_block
 from railquake.physics.suspension import element_matrix, element_row, roll_row
@@ -40,6 +41,8 @@ class VehicleMatrices:
         Stiffness without gravity's moments.
     joints : Joints
         None of a linear car.
+    stages : tuple of Stage
+        Primary and secondary suspension, as many as there are.
     """
 
     bodies: tuple[str, ...]
@@ -48,6 +51,7 @@ class VehicleMatrices:
     stiffness: Array
     without_gravity: Array
     joints: Joints = NO_JOINTS
+    stages: tuple[Stage, ...] = ()
 
     @property
     def is_finite(self) -> bool:
@@ -112,7 +116,7 @@ def vehicle_matrices(vehicle: Vehicle) -> VehicleMatrices:
     VehicleMatrices
     """
     bodies = bodies_of(vehicle)
-    linear = _linear_matrices(vehicle, bodies)
+    linear = replace(_linear_matrices(vehicle, bodies), stages=stages_of(vehicle, bodies))
     return linear if vehicle.kinematics == "linear" else _with_gravity(linear, vehicle, bodies)
 
 

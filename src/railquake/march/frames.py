@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from railquake.march.climb import measure_climb
 from railquake.march.contact import look_at_flanges
 from railquake.march.events import detect_events, release_train
 from railquake.march.ground import begin_frame
 from railquake.march.momentum import close_momentum, open_momentum
-from railquake.march.peaks import OSCILLATORS, filter_forces, swing_on_track
+from railquake.march.peaks import OSCILLATORS, filter_forces, measure_bodies, swing_on_track
 from railquake.march.rows import constant, size, state
 from railquake.march.step import step
 from railquake.march.structure import refresh_hinge
@@ -76,6 +77,9 @@ def run_frame(S: Array, Q: Array, geometry: Geometry, lanes: int, refresh: int) 
         close_momentum(S, Q, lane)
     for lane in range(lanes):
         filter_forces(S, Q, lane)
+    measure_climb(S, Q, lanes)
+    for lane in range(lanes):
+        measure_bodies(S, Q, lane)
     for n in range(OSCILLATORS):
         for lane in range(lanes):
             swing_on_track(S, Q, n, lane)

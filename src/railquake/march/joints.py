@@ -247,6 +247,17 @@ def pull_vertical_knee(
     add_pull(S, upper, lower, pull(at, (0.0, -force), 0.0), lane)
 
 
+def finite_travel(S: Array, Q: Array, stage: int, lane: int) -> float:
+    """Lateral travel of a stage of the suspension in the mean axes of its bodies, m."""
+    gap = constant.STAGE_GAPS + 2 * stage
+    return relative(
+        pose_of(S, int(Q[constant.STAGE_UPPER + stage, lane]), lane),
+        pose_of(S, int(Q[constant.STAGE_LOWER + stage, lane]), lane),
+        read_tie(Q, constant.STAGE_TIES + size.TIE_FIELDS * stage, lane),
+        (Q[gap, lane], Q[gap + 1, lane]),
+    ).y
+
+
 # --- all joints of a car ------------------------------------------------------------------------
 
 _PULLS = {
@@ -289,6 +300,7 @@ def joined_laws(joined: Joined) -> dict[Callable[..., Any], Callable[..., Any]]:
     return {
         sprung.accelerate_free: _made("accelerate_joined", "S, Q, lanes", accelerate),
         sprung.vehicle_energy: _made("joined_energy", "S, Q, lane", energy),
+        sprung.stage_travel: finite_travel,
         counted_place: true_place,
         counted_moment: true_moment,
         momentum.stiffness_of_ends: momentum.no_couple,

@@ -7,14 +7,16 @@ import numpy as np
 from railquake.march.packing import reader
 from railquake.march.rows import constant, state
 from railquake.march.rows_state import FILTERED, POWERS
+from railquake.march.sprung import stage_travel
 from railquake.measures.housner import PERIODS
-from railquake.physics.derailment import derailment_coefficient, least_load
+from railquake.physics.derailment import climbing_time, derailment_coefficient, least_load
 from railquake.physics.elementary import larger_of
 from railquake.physics.low_pass import Coefficients, Memory, low_pass
 from railquake.physics.oscillator import Step, swing
 
 __all__ = [
     "filter_forces",
+    "measure_bodies",
     "measure_contact",
     "measure_structure",
     "raise_peak",
@@ -68,6 +70,18 @@ def measure_contact(S: Array, Q: Array, lane: int) -> None:
     left, right = wheels_off(S, lane)
     S[state.TIME_ONE_WHEEL, lane] += dt * on * max(left, right)
     S[state.TIME_DETACHED, lane] += dt * on * min(left, right)
+    least = least_load(Q[constant.STATIC_WHEEL_LOAD, lane])
+    climbing_left = climbing_time(
+        S[state.CLIMB_TIME_LEFT, lane], dt, -S[state.LATERAL_LEFT, lane], load_left, least
+    )
+    climbing_right = climbing_time(
+        S[state.CLIMB_TIME_RIGHT, lane], dt, S[state.LATERAL_RIGHT, lane], load_right, least
+    )
+    S[state.CLIMB_TIME_LEFT, lane] = climbing_left
+    S[state.CLIMB_TIME_RIGHT, lane] = climbing_right
+    raise_peak(S, state.LONGEST_CLIMB_LEFT, climbing_left, lane)
+    raise_peak(S, state.LONGEST_CLIMB_RIGHT, climbing_right, lane)
+    raise_peak(S, state.FLANGE_BORE, flange_penetration(S, lane), lane)
     # for the frame's means
     S[state.SUM_LATERAL, lane] += lateral
     for side in range(2):
@@ -80,6 +94,13 @@ def wheels_off(S: Array, lane: int) -> tuple[float, float]:
     left = max(S[state.PENETRATION_LEFT_TREAD, lane], S[state.PENETRATION_LEFT_FLANGE, lane])
     right = max(S[state.PENETRATION_RIGHT_TREAD, lane], S[state.PENETRATION_RIGHT_FLANGE, lane])
     return 0.0 if left > 0.0 else 1.0, 0.0 if right > 0.0 else 1.0
+
+
+def flange_penetration(S: Array, lane: int) -> float:
+    """Of the flange that penetrates its rail more, m; 0 where none bears."""
+    left = S[state.PENETRATION_LEFT_FLANGE, lane]
+    right = S[state.PENETRATION_RIGHT_FLANGE, lane]
+    return max(left, right, 0.0)
 
 
 def filtered(S: Array, Q: Array, number: int, share: float, lane: int) -> float:
@@ -102,24 +123,48 @@ def filtered(S: Array, Q: Array, number: int, share: float, lane: int) -> float:
 
 
 def filter_forces(S: Array, Q: Array, lane: int) -> None:
-    """Once a frame: low-passed lateral force, wheel loads and derailment coefficient Y/Q."""
+    """Once a frame: low-passed lateral force, wheel loads and derailment coefficient Y/Q.
+
+    That of the treads alone is zero while a flange bears, whose force would ring on in the filter.
+    """
+    free = 0.0 if S[state.FLANGE_BORE, lane] > 0.0 else 1.0
+    S[state.SUM_TREADS, lane] = free * S[state.SUM_LATERAL, lane]
     share = 1.0 / Q[constant.FRAME_STEPS, lane]
     lateral = filtered(S, Q, 0, share, lane)
     load_left = filtered(S, Q, 1, share, lane)
     load_right = filtered(S, Q, 2, share, lane)
     y_left = filtered(S, Q, 3, share, lane)
     y_right = filtered(S, Q, 4, share, lane)
+    treads = filtered(S, Q, 5, share, lane)
     for k in range(FILTERS):
         S[state.SUM + k, lane] = 0.0
     on = S[state.ON_TRACK, lane]
     raise_peak(S, state.PEAK_LATERAL_FILTERED, on * lateral, lane)
-    lowest = min(load_left, load_right)
-    kept = S[state.LOWEST_LOAD, lane]
-    S[state.LOWEST_LOAD, lane] = min(kept, lowest) if on > 0.0 else kept
+    raise_peak(S, state.PEAK_LATERAL_TREADS, on * free * treads, lane)
+    keep_lowest(S, state.LOWEST_LOAD_LEFT, load_left, lane)
+    keep_lowest(S, state.LOWEST_LOAD_RIGHT, load_right, lane)
     least = least_load(Q[constant.STATIC_WHEEL_LOAD, lane])
     left = derailment_coefficient(y_left, load_left, least)
     right = derailment_coefficient(y_right, load_right, least)
     raise_peak(S, state.PEAK_DERAILMENT_COEFFICIENT, on * max(left, right), lane)
+
+
+def keep_lowest(S: Array, row: int, load: float, lane: int) -> None:
+    """Keep the lowest load of a train that is on the track."""
+    kept = S[row, lane]
+    S[row, lane] = load if load < kept and S[state.ON_TRACK, lane] > 0.0 else kept
+
+
+def measure_bodies(S: Array, Q: Array, lane: int) -> None:
+    """Once a frame: roll and acceleration of the car's body, and travel of the suspension."""
+    on = S[state.ON_TRACK, lane]
+    body = 2 * int(Q[constant.MEASURED_BODY, lane])
+    roll = S[state.VEHICLE_X + body + 1, lane] - S[state.TRACK_PHI, lane]
+    acceleration = S[state.VEHICLE_A + body, lane] + S[state.GROUND, lane]
+    raise_peak(S, state.PEAK_BODY_ROLL, on * roll, lane)
+    raise_peak(S, state.PEAK_BODY_A, on * acceleration, lane)
+    raise_peak(S, state.PEAK_PRIMARY_TRAVEL, on * stage_travel(S, Q, 0, lane), lane)
+    raise_peak(S, state.PEAK_SECONDARY_TRAVEL, on * stage_travel(S, Q, 1, lane), lane)
 
 
 def swing_on_track(S: Array, Q: Array, n: int, lane: int) -> None:

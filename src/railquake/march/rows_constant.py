@@ -3,7 +3,9 @@
 from railquake.march.declaration import Row, block, row
 from railquake.measures.housner import PERIODS
 
-__all__ = ["CONSTANT_GROUPS", "CONSTANT_ROWS"]
+__all__ = ["CONSTANT_GROUPS", "CONSTANT_ROWS", "STAGES"]
+
+STAGES = ("primary", "secondary")  # of the suspension, from the wheelset upwards
 
 _AXIS = (
     ("FINE", "fine within +- this"),
@@ -107,6 +109,8 @@ _MEASURES = (
         "low-pass of the frame means (`low_pass.Coefficients`)",
         [(f"FILTER_{name}", "1", f"{name.lower()}") for name in ("B0", "B1", "B2", "A1", "A2")],
     ),
+    row("CLIMB_WINDOW", "1", "of the mean of Y/Q (`sliding_mean.Window`)", rows=2),
+    row("SUSTAINED_WINDOW", "1", "of the mean of the lateral force", rows=2),
     row(
         "SWING_BY",
         "1",
@@ -121,6 +125,17 @@ _VEHICLE = (
     row("INVERSE_MASS", "1/kg or 1/(kg m2)", "of each degree of freedom", rows="DOFS"),
     row("STIFFNESS", "N/m, N or N m", "K_v", rows="VEHICLE_ENTRIES"),
     row("DAMPING", "N s/m, N s or N m s", "C_v", rows="VEHICLE_ENTRIES"),
+    row("MEASURED_BODY", "1", "number of the heaviest body on the wheelset"),
+    # both bodies are the first where there is no such stage
+    row(
+        "STAGE_UPPER",
+        "1",
+        "of each stage of the suspension: number of its upper body",
+        rows=len(STAGES),
+    ),
+    row("STAGE_LOWER", "1", "number of its lower body", rows=len(STAGES)),
+    row("STAGE_TIES", "m", "points at its springs' level (`joint.Tie`)", rows=4 * len(STAGES)),
+    row("STAGE_GAPS", "m", "d_0 of each stage, y and z", rows=2 * len(STAGES)),
 )
 
 # from the inputs by themselves: nothing that moves a body reads them (`momentum`)

@@ -4,12 +4,17 @@ from railquake.march.declaration import Row, block, row
 from railquake.measures import MEASURES, StateRow
 from railquake.measures.housner import PERIODS
 from railquake.physics.derailment import EVENTS
+from railquake.physics.sliding_mean import BLOCKS
 
-__all__ = ["FILTERED", "PATCHES", "POWERS", "STATE_GROUPS", "STATE_ROWS"]
+__all__ = ["FILTERED", "PATCHES", "POWERS", "SLIDING", "STATE_GROUPS", "STATE_ROWS"]
 
 PATCHES = ("left tread", "left flange", "right tread", "right flange")
 POWERS = ("impact", "creep", "spin", "forward")
-FILTERED = ("lateral force", "load left", "load right", "lateral left", "lateral right")
+FILTERED = (
+    "lateral force", "load left", "load right", "lateral left", "lateral right",
+    "lateral force of treads",
+)  # fmt: skip
+SLIDING = ("Y/Q left", "Y/Q right", "lateral force of treads")
 
 _GROUND = (
     row("GROUND", "m/s2", "ground acceleration, lateral", "ground_acceleration_m_s2"),
@@ -306,9 +311,15 @@ _FRAME = (
             ("SUM_LOAD_RIGHT", "N", "load of the right wheels"),
             ("SUM_LATERAL_LEFT", "N", "lateral force of the left wheels"),
             ("SUM_LATERAL_RIGHT", "N", "lateral force of the right wheels"),
+            ("SUM_TREADS", "N", "lateral force on the track if no flange bears, else 0"),
         ),
     ),
-    row("FILTER_X1", "N", "low-pass filters: last input", rows=len(FILTERED)),
+    block(
+        "FILTER_X1",
+        "low-pass filters: last input, means over the frame",
+        (("MEAN_TREADS", "N", "of `SUM_TREADS`", None, len(FILTERED) - 1),),
+        rows=len(FILTERED),
+    ),
     row("FILTER_X2", "N", "input before", rows=len(FILTERED)),
     block(
         "FILTER_Y1",
@@ -317,12 +328,26 @@ _FRAME = (
             ("LATERAL_FILTERED", "N", "the same, low-passed", "lateral_force_filtered_n"),
             ("LOAD_LEFT_FILTERED", "N", "low-passed", "wheel_load_left_filtered_n"),
             ("LOAD_RIGHT_FILTERED", "N", "low-passed", "wheel_load_right_filtered_n"),
+            ("LATERAL_LEFT_FILTERED", "N", "low-passed"),
+            ("LATERAL_RIGHT_FILTERED", "N", "low-passed"),
+            ("TREADS_FILTERED", "N", "low-passed"),
         ),
         rows=len(FILTERED),
     ),
     row("FILTER_Y2", "N", "output before", rows=len(FILTERED)),
     row("PEAK_LATERAL_FILTERED", "N", "largest low-passed lateral force"),
-    row("LOWEST_LOAD", "N", "least low-passed load of one side"),
+    row("FLANGE_BORE", "m", "largest penetration of a flange in this frame; 0: none bore"),
+    row("CLIMB_TIME_LEFT", "s", "for how long Y/Q of the left wheels has been above its limit"),
+    row("CLIMB_TIME_RIGHT", "s", "of the right wheels"),
+    # sliding means, in the order of `SLIDING` (`sliding_mean.Filling`)
+    row("BLOCK_SHARE", "1", "how full the block is that is being filled", rows=len(SLIDING)),
+    row("BLOCK_PART", "1 or N", "its mean times that", rows=len(SLIDING)),
+    row("BLOCKS_BEFORE", "1", "blocks filled before it", rows=len(SLIDING)),
+    row("BLOCK_MEAN", "1 or N", "means of a window's blocks", rows=BLOCKS * len(SLIDING)),
+    row("PEAK_PRIMARY_TRAVEL", "m", "largest lateral travel of the primary suspension"),
+    row("PEAK_SECONDARY_TRAVEL", "m", "of the secondary suspension"),
+    row("LOWEST_LOAD_LEFT", "N", "least low-passed load of the left wheels"),
+    row("LOWEST_LOAD_RIGHT", "N", "least low-passed load of the right wheels"),
     row("PEAK_DERAILMENT_COEFFICIENT", "1", "largest low-passed Y/Q"),
     row("PEAK_CLEARANCE", "m", "flange tip above the rail's crown at its highest"),
     row("ON_TRACK", "1", "1, or 0 once the vehicle has derailed and left the model"),

@@ -115,6 +115,7 @@ _PRESCRIBED: Laws = {
 _LINEAR: Laws = {
     sprung.accelerate_free: sprung.accelerate_linear,
     sprung.vehicle_energy: sprung.linear_energy,
+    sprung.stage_travel: sprung.linear_travel,
     counted_place: place_undeformed,
     counted_moment: moment_undeformed,
     momentum.stiffness_of_ends: momentum.couple_of_ends,

@@ -5,8 +5,11 @@ from typing import Any
 import numpy as np
 
 from railquake.march.packed import packed
+from railquake.march.packing import reader
 from railquake.march.rows import constant, size, state
 from railquake.physics.energy import kinetic_and_elastic
+from railquake.physics.joint import Tie
+from railquake.physics.suspension import lateral_travel
 from railquake.physics.vehicle import free_acceleration
 from railquake.physics.zhai import predict_displacement, predict_velocity
 
@@ -14,14 +17,19 @@ __all__ = [
     "accelerate_free",
     "accelerate_linear",
     "linear_energy",
+    "linear_travel",
     "lose_to_dashpots",
     "predict",
     "predict_sprung",
+    "read_tie",
+    "stage_travel",
     "vehicle_energy",
     "work_on_bodies",
 ]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+
+read_tie = reader(Tie)
 
 
 def predict_sprung(S: Array, Q: Array, i: int, lane: int) -> None:
@@ -74,6 +82,14 @@ def accelerate_free(S: Array, Q: Array, lanes: int) -> None:
 
 def vehicle_energy(S: Array, Q: Array, lane: int) -> float:
     """Slot of the vehicle: its kinetic and elastic energy now, J."""
+    raise NotImplementedError("a vehicle's kinematics are chosen when a kernel is bound")
+
+
+def stage_travel(S: Array, Q: Array, stage: int, lane: int) -> float:
+    """Slot of the vehicle: lateral travel of a stage of its suspension, m.
+
+    Of the upper body's point at the level of the springs against the lower one's.
+    """
     raise NotImplementedError("a vehicle's kinematics are chosen when a kernel is bound")
 
 
@@ -142,3 +158,14 @@ def linear_energy(S: Array, Q: Array, lane: int) -> float:
             Q[constant.INVERSE_MASS + i, lane],
         )
     return energy
+
+
+def linear_travel(S: Array, Q: Array, stage: int, lane: int) -> float:
+    """Lateral travel of a stage of a vehicle with the matrices of Eq. 1, m."""
+    upper = state.VEHICLE_X + 2 * int(Q[constant.STAGE_UPPER + stage, lane])
+    lower = state.VEHICLE_X + 2 * int(Q[constant.STAGE_LOWER + stage, lane])
+    return lateral_travel(
+        (S[upper, lane], S[upper + 1, lane]),
+        (S[lower, lane], S[lower + 1, lane]),
+        read_tie(Q, constant.STAGE_TIES + size.TIE_FIELDS * stage, lane),
+    )

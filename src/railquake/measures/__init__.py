@@ -2,8 +2,8 @@ r"""Every measure of a run, declared once: key, unit, names, meaning, and where 
 
 A row (`run.assess.assess`), the columns of a study's table, the axes of reports and pictures, what
 uplift and outcomes are held against, pelicun's names and the tables of docs/measures.md all follow
-from `MEASURES`.  A new measure of the march takes two files: its declaration here, which makes its
-`StateRow`, too, and `march.peaks`, where that is accumulated.
+from `MEASURES`.  A new measure of the march takes two files: its declaration, here or in
+`measures.train`, which makes its `StateRow`, too, and `march.peaks`, where that is accumulated.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from railquake.measures.declaration import (
     WorkedOut,
     printed,
 )
+from railquake.measures.train import TRAIN
 
 __all__ = [
     "MEASURES", "STANDARD_GRAVITY", "AttributeOf", "EventTime", "Intensity", "Kind", "Measure",
@@ -165,87 +166,7 @@ MEASURES: tuple[Measure, ...] = (
         place=WorkedOut("period"),
     ),
     # --- the train, until it leaves the track
-    Measure(
-        "relative_roll_peak_rad", Kind.TRAIN, "rad", "relative roll", "peak relative roll",
-        factor=1e3, shown_unit="mrad", meaning="roll of the wheelset against the track",
-        place=StateRow("PEAK_ROLL"),
-    ),
-    Measure(
-        "uplift_ratio", Kind.TRAIN, "1", "uplift ratio", "normalised uplift",
-        meaning="the relative roll over the reference roll of the wheel-rail pair (0.836° for "
-        "`bart`); 1 is the onset of slide-off",
-        place=WorkedOut("uplift_ratio"), step_floor=0.05, paired=True,
-    ),
-    Measure(
-        "lateral_shift_peak_m", Kind.TRAIN, "m", "lateral shift", "peak lateral shift",
-        factor=1e3, shown_unit="mm", meaning="of the wheelset's centre, in the track's axes",
-        place=StateRow("PEAK_SHIFT"),
-    ),
-    Measure(
-        "wheel_load_static_n", Kind.TRAIN, "N", "static load", "static load of one side",
-        factor=1e-3, shown_unit="kN",
-        meaning="half the car's weight: what one side bears at rest on a level track",
-        place=AttributeOf("system.static_wheel_load"),
-    ),
-    Measure(
-        "wheel_load_peak_n", Kind.TRAIN, "N", "wheel load", "peak load of one side",
-        factor=1e-3, shown_unit="kN",
-        meaning="of all wheels of one side together, normal to the plane of the track, raw",
-        place=StateRow("PEAK_LOAD"),
-    ),
-    Measure(
-        "stop_use_peak", Kind.TRAIN, "1", "use of stops", "largest use of a bump stop",
-        optional=True,
-        meaning="largest travel of a stop over that at which its table ends; beyond 1 its last "
-        "slope has gone on. None for a car without such stops",
-        place=WorkedOut("stop_use"),
-    ),
-    Measure(
-        "wheel_unloading_peak", Kind.TRAIN, "1", "unloading", "peak unloading of one side",
-        meaning="1 minus the lowest low-passed load of a side over the static one; 1: unloaded",
-        place=WorkedOut("wheel_unloading"),
-    ),
-    Measure(
-        "lateral_force_peak_n", Kind.TRAIN, "N", "raw lateral force", "peak lateral force, raw",
-        factor=1e-3, shown_unit="kN", meaning="of the train on the track, both sides together, raw",
-        place=StateRow("PEAK_LATERAL"),
-    ),
-    Measure(
-        "lateral_force_filtered_peak_n", Kind.TRAIN, "N", "lateral force",
-        "peak lateral force, impacts filtered",
-        factor=1e-3, shown_unit="kN",
-        meaning="the same through a second-order Butterworth low-pass "
-        "(`solver.lateral_force_filter`, 20 Hz) of the means over frames: short impacts out, the "
-        "paper's Figure 10",
-        place=StateRow("PEAK_LATERAL_FILTERED"), paired=True,
-    ),
-    Measure(
-        "derailment_coefficient_peak", Kind.TRAIN, "1", "Y/Q", "peak derailment coefficient",
-        meaning="low-passed Y/Q of a side, where the low-passed load is above a tenth of the "
-        "static one",
-        place=StateRow("PEAK_DERAILMENT_COEFFICIENT"),
-    ),
-    Measure(
-        "flange_clearance_peak_m", Kind.TRAIN, "m", "flange clearance", "highest flange clearance",
-        factor=1e3, shown_unit="mm",
-        meaning="highest place of a flange tip above its rail's crown, from the profiles; "
-        "negative: it stayed below. Once a frame",
-        place=StateRow("PEAK_CLEARANCE"),
-    ),
-    Measure(
-        "off_rail_time_s", Kind.TRAIN, "s", "off rail", "time off the rail",
-        meaning="total time with at least one side off its rail", place=StateRow("TIME_ONE_WHEEL"),
-    ),
-    Measure(
-        "detached_time_s", Kind.TRAIN, "s", "detached", "time off both rails",
-        meaning="total time with both sides off", place=StateRow("TIME_DETACHED"),
-    ),
-    Measure(
-        "uplifts", Kind.TRAIN, "1", "uplifts", "number of uplifts",
-        value=int, meaning="number of times that uplift began, not counted again within 50 ms of "
-        "its last end",
-        place=StateRow("UPLIFTS"),
-    ),
+    *TRAIN,
     # --- when
     Measure(
         "flange_contact_first_s", Kind.TIME, "s", "flange contact", "first flange contact",

@@ -29,6 +29,7 @@ __all__ = [
     "BEYOND_STOP",
     "CHATTER",
     "CLIMB",
+    "CLIMB_LIMIT",
     "COMBINED_WITHIN",
     "DERAILMENTS",
     "EVENTS",
@@ -44,6 +45,7 @@ __all__ = [
     "Wheel",
     "bears",
     "clearance",
+    "climbing_time",
     "derailment_coefficient",
     "events",
     "flange_tip",
@@ -51,6 +53,7 @@ __all__ = [
     "gone_to",
     "has_left",
     "is_above",
+    "lateral_over_vertical",
     "least_load",
     "passed_crown",
     "side_of",
@@ -64,6 +67,7 @@ COMBINED_WITHIN: Final = 0.5  # between slide-off and overturning, s
 CHATTER: Final = 0.05  # an event that holds again after less than this has not ended, s
 NEARLY: Final = 1e-4  # below the crown, m; a loaded tip on it flattens a little
 LEAST_SHARE: Final = 0.1  # of the static load, see `least_load`
+CLIMB_LIMIT: Final = 0.8  # of Y/Q, EN 14363's and that of Japanese practice
 
 
 class Limits(NamedTuple):
@@ -238,6 +242,30 @@ def least_load(static: float) -> float:
     return LEAST_SHARE * static
 
 
+def lateral_over_vertical(lateral: float, load: float, least: float) -> float:
+    """Y/Q of a wheel, with the sign of its lateral force; 0 below the least load."""
+    return lateral / max(load, least) if load > least else 0.0
+
+
 def derailment_coefficient(lateral: float, load: float, least: float) -> float:
-    """Y/Q of a wheel; 0 below the least load."""
-    return abs(lateral) / max(load, least) if load > least else 0.0
+    """Magnitude of a wheel's Y/Q; 0 below the least load."""
+    return abs(lateral_over_vertical(lateral, load, least))
+
+
+def climbing_time(before: float, dt: float, outward: float, load: float, least: float) -> float:
+    """For how long Y/Q has been above `CLIMB_LIMIT` without interruption, s.
+
+    Parameters
+    ----------
+    before : float
+        The same one time step before, s.
+    dt : float
+        Time step, s.
+    outward : float
+        Lateral force of the wheel on its rail, towards its flange, N.
+    load : float
+        Vertical load, N.
+    least : float
+        `least_load`, N.
+    """
+    return before + dt if load > least and outward > CLIMB_LIMIT * load else 0.0

@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["element_matrix", "element_row", "roll_row"]
+from railquake.physics.joint import Tie
+
+__all__ = ["element_matrix", "element_row", "lateral_travel", "roll_row"]
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -53,6 +55,19 @@ def roll_row(bodies: int, first: int, second: int) -> Array:
     row = np.zeros(3 * bodies)
     row[3 * first + 2], row[3 * second + 2] = 1.0, -1.0
     return row
+
+
+def lateral_travel(upper: tuple[float, float], lower: tuple[float, float], tie: Tie) -> float:
+    """Lateral travel of a point of an upper body against one of a lower body, m.
+
+    Parameters
+    ----------
+    upper, lower : (float, float)
+        Lateral displacement, m, and roll, rad, of each body.
+    tie : Tie
+        The two points.
+    """
+    return upper[0] - tie.upper_z * upper[1] - (lower[0] - tie.lower_z * lower[1])
 
 
 def element_matrix(rows: Sequence[Array], coefficients: Sequence[float], dofs: int) -> Array:

@@ -15,6 +15,7 @@ import numpy as np
 from railquake import measures
 from railquake.inputs.ground_motion import jma_intensity
 from railquake.inputs.support import Pier
+from railquake.march.rows_constant import STAGES
 from railquake.measures import (
     AttributeOf,
     EventTime,
@@ -114,7 +115,25 @@ def _uplift_ratio(response: Response) -> float:
 
 
 def _wheel_unloading(response: Response) -> float:
-    return 1.0 - _row(response, "LOWEST_LOAD") / response.system.static_wheel_load
+    return 1.0 - min(_load_ratio(response, "LEFT"), _load_ratio(response, "RIGHT"))
+
+
+def _load_ratio(response: Response, side: str) -> float:
+    return _row(response, f"LOWEST_LOAD_{side}") / response.system.static_wheel_load
+
+
+def _flange_climb(response: Response) -> float:
+    return max(_row(response, "PEAK_CLIMB_LEFT"), _row(response, "PEAK_CLIMB_RIGHT"))
+
+
+def _travel(response: Response, stage: int) -> float | None:
+    name = f"PEAK_{STAGES[stage].upper()}_TRAVEL"
+    return _row(response, name) if stage < len(response.system.vehicle.stages) else None
+
+
+def _suspension_travel(response: Response) -> float | None:
+    found = (_travel(response, stage) for stage in range(len(STAGES)))
+    return max((travel for travel in found if travel is not None), default=None)
 
 
 def _stop_use(response: Response) -> float | None:
@@ -163,13 +182,19 @@ def _jma_intensity(response: Response) -> float | None:
 
 _WORKED_OUT: Mapping[str, Callable[[Response], Any]] = {
     "derailed": lambda response: response.derailment_mode is not None,
+    "flange_climb": _flange_climb,
     "hinge_law": _hinge_law,
     "jma_intensity": _jma_intensity,
+    "load_ratio_left": lambda response: _load_ratio(response, "LEFT"),
+    "load_ratio_right": lambda response: _load_ratio(response, "RIGHT"),
     "period": _period,
+    "primary_travel": lambda response: _travel(response, 0),
+    "secondary_travel": lambda response: _travel(response, 1),
     "spectral_acceleration": _spectral_acceleration,
     "spectral_intensity": lambda response: spectral.spectral_intensity(response.system.ground),
     "sequence": lambda response: response.explain(),
     "speed": _speed,
+    "suspension_travel": _suspension_travel,
     "time_step_error": _time_step_error,
     "track_intensity": _track_intensity,
     "uplift_ratio": _uplift_ratio,
