@@ -131,23 +131,27 @@ class Response:
         return "safe"
 
     @property
+    def _ending(self) -> verdict.Ending:
+        return verdict.Ending(self.end, self.system.layout.state)
+
+    @property
     def derailment_mode(self) -> str | None:
         """How it derailed and to which side, such as ``slide-off left``; None if it did not."""
-        return verdict.derailment_mode(self)
+        return verdict.derailment_mode(self._ending)
 
     @property
     def beyond_model(self) -> str | None:
         """Why the car has been where its model ends; what follows is not to be believed."""
-        return verdict.beyond_model(self)
+        return verdict.beyond_model(self._ending)
 
     @property
     def happenings(self) -> tuple[Happening, ...]:
         """Every event when it first held, with its side and where the wheelset was."""
-        return verdict.happenings(self)
+        return verdict.happenings(self._ending)
 
     def explain(self) -> str:
         """What happened to the train, in sentences; see `verdict.explain`."""
-        return verdict.explain(self)
+        return verdict.explain(self._ending)
 
     @property
     def times(self) -> Array:

@@ -7,7 +7,9 @@ without a history.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from railquake.physics.derailment import (
     BEYOND,
@@ -26,9 +28,20 @@ from railquake.physics.derailment import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from railquake.run.response import Response
+    from railquake.march.rows import Numbers
 
-__all__ = ["Happening", "beyond_model", "derailment_mode", "explain", "happenings"]
+__all__ = ["Ending", "Happening", "beyond_model", "derailment_mode", "explain", "happenings"]
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+class Ending(NamedTuple):
+    """State of a run at its end."""
+
+    end: Array
+    """Shape (state rows, 1)."""
+    state: Numbers
+    """Its rows by their names."""
 
 
 class Happening(NamedTuple):
@@ -45,38 +58,38 @@ class Happening(NamedTuple):
     """Relative roll."""
 
 
-def _number(response: Response, row: str, event: int = 0) -> float:
-    return float(response.end[getattr(response.system.layout.state, row) + event, 0])
+def _number(ending: Ending, row: str, event: int = 0) -> float:
+    return float(ending.end[getattr(ending.state, row) + event, 0])
 
 
-def _first(response: Response, event: int) -> Happening | None:
-    time = _number(response, "FIRST_TIME", event)
+def _first(ending: Ending, event: int) -> Happening | None:
+    time = _number(ending, "FIRST_TIME", event)
     if time < 0.0:
         return None
     return Happening(
         EVENTS[event],
         time,
-        "right" if _number(response, "FIRST_SIDE", event) > 0.0 else "left",
-        _number(response, "FIRST_DISPLACEMENT", event),
-        _number(response, "FIRST_ROLL", event),
+        "right" if _number(ending, "FIRST_SIDE", event) > 0.0 else "left",
+        _number(ending, "FIRST_DISPLACEMENT", event),
+        _number(ending, "FIRST_ROLL", event),
     )
 
 
-def happenings(response: Response) -> tuple[Happening, ...]:
+def happenings(ending: Ending) -> tuple[Happening, ...]:
     """Every event that happened, when it first did, in the order of their times."""
-    found = [_first(response, event) for event in range(len(EVENTS))]
+    found = [_first(ending, event) for event in range(len(EVENTS))]
     return tuple(sorted((one for one in found if one), key=lambda one: one.time_s))
 
 
-def derailment_mode(response: Response) -> str | None:
+def derailment_mode(ending: Ending) -> str | None:
     """How the train derailed and to which side, such as ``slide-off left``; None if it did not.
 
     ``slide-off``, ``climb``, ``overturned``, or ``combined``: one of the first two, and overturning
     within half a second of it.
     """
-    if _number(response, "DIVERGED") > 0.0:
+    if _number(ending, "DIVERGED") > 0.0:
         return None
-    found = [one for event in DERAILMENTS if (one := _first(response, event))]
+    found = [one for event in DERAILMENTS if (one := _first(ending, event))]
     if not found:
         return None
     first = min(found, key=lambda one: one.time_s)
@@ -88,9 +101,9 @@ def derailment_mode(response: Response) -> str | None:
     return f"{'combined' if is_combined else first.event} {first.side}"
 
 
-def beyond_model(response: Response) -> str | None:
+def beyond_model(ending: Ending) -> str | None:
     """Why the car has been where its model ends; None if it has not."""
-    reason = int(_number(response, "BEYOND_REASON"))
+    reason = int(_number(ending, "BEYOND_REASON"))
     return BEYOND[reason - 1] if reason else None
 
 
@@ -105,7 +118,7 @@ _SENTENCES: dict[int, Callable[[Happening], str]] = {
 }
 
 
-def explain(response: Response) -> str:
+def explain(ending: Ending) -> str:
     """What happened to the train, in sentences.
 
     Returns
@@ -114,7 +127,7 @@ def explain(response: Response) -> str:
         Such as ``5.34 s left wheels lift; 5.52 s onset: the lifted left flange is above its rail;
         6.96 s slides off to the left.``
     """
-    found = list(happenings(response))
+    found = list(happenings(ending))
     onset = next((one for one in found if one.event == EVENTS[ONSET]), None)
     over = next((one.time_s for one in found if one.event == EVENTS[OVERTURNED]), math.inf)
     told = [
@@ -125,13 +138,13 @@ def explain(response: Response) -> str:
         if (one.event != EVENTS[FLANGE_OVER] or onset is None or one.time_s < onset.time_s)
         and one.time_s <= over
     ]
-    beyond = beyond_model(response)
+    beyond = beyond_model(ending)
     if beyond is not None:
-        told.append((_number(response, "BEYOND_TIME"), f"the model ends: {beyond}"))
-    mode = derailment_mode(response)
+        told.append((_number(ending, "BEYOND_TIME"), f"the model ends: {beyond}"))
+    mode = derailment_mode(ending)
     lifted = any(one.event == EVENTS[UPLIFT] for one in found)
-    back = _number(response, "UPLIFT_END")
-    if mode is None and lifted and back >= 0.0 and not _is_up(response):
+    back = _number(ending, "UPLIFT_END")
+    if mode is None and lifted and back >= 0.0 and not _is_up(ending):
         told.append((back, "back on both rails"))
     told.sort(key=lambda one: one[0])
     sentences = [f"{time:.2f} s {what}" for time, what in told]
@@ -142,6 +155,6 @@ def explain(response: Response) -> str:
     return "; ".join(sentences) + "."
 
 
-def _is_up(response: Response) -> bool:
+def _is_up(ending: Ending) -> bool:
     """Whether a wheel is off its rail at the record's end."""
-    return bool(int(_number(response, "FLAGS")) >> UPLIFT & 1)
+    return bool(int(_number(ending, "FLAGS")) >> UPLIFT & 1)

@@ -13,6 +13,7 @@ from railquake.march import climb, peaks
 from railquake.march.compiler import PYTHON
 from railquake.march.order import kernel_order
 from railquake.march.rows import constant, size, state
+from railquake.physics.derailment import OVERTURNED
 from railquake.physics.sliding_mean import window_of
 from stages import stage
 
@@ -192,10 +193,14 @@ def test_a_wheel_is_off_its_rail_when_neither_tread_nor_flange_bears(bearing):
 def test_structure_runs_on_alone_after_the_train_has_left():
     system = pushed("to the right", DT)
     start = system.start.copy()
-    start[state.VEHICLE_X + size.WHEELSET_Y] += 0.2  # the wheelset's y, beyond its shift's limit
-    response = rq.simulate(replace(system, start=start), target=PYTHON)
+    constants = system.constants.copy()
+    # off its rails at once, and overturned before: it is followed no further
+    constants[constant.SLIDE_LIMIT] = 0.0
+    start[state.FIRST_TIME + OVERTURNED], start[state.FIRST_SIDE + OVERTURNED] = 0.0, 1.0
+    changed = replace(system, start=start, constants=constants)
+    response = rq.simulate(changed, target=PYTHON)
     row = rq.assess(response)
-    assert (row["status"], row["derailment_mode"]) == ("derailed", "slide-off right")
+    assert (row["status"], row["derailment_mode"]) == ("derailed", "overturned right")
     assert row["derailed_s"] == pytest.approx(1e-4)
     # one frame is all that counts of the train: off its rails, then out of the model
     assert row["off_rail_time_s"] <= 1e-4 + 1e-12
