@@ -51,7 +51,7 @@ WHEEL_ON_RAIL: dict[str, dict[str, Any]] = {
 STRUCTURE: dict[str, dict[str, Any]] = {
     "elastic hinge": {"support.hinge": "elastic"},
     "damping 1 %": {"support.damping_ratio": 0.01},
-    '`damping_of = "initial"`': {"support.damping_of": "initial"},
+    '`damping_of = "column"`': {"support.damping_of": "column"},
     '`damping_of = "tangent"`': {"support.damping_of": "tangent"},
     "P-delta": {"support.p_delta": True},
     "decoupled": {"support.coupled": False},
@@ -81,7 +81,7 @@ COUNTS: dict[str, dict[str, Any]] = {
     },
     "friction 0.2": {"wheelrail.friction": 0.2},
     "friction 0.4": {"wheelrail.friction": 0.4},
-    '`damping_of = "initial"`': {"support.damping_of": "initial"},
+    '`damping_of = "column"`': {"support.damping_of": "column"},
     '`damping_of = "tangent"`': {"support.damping_of": "tangent"},
     "restitution without memory": {"wheelrail.restitution_law": "constant-hysteresis"},
     "flange creep `she`": {"wheelrail.flange_creep_law": "she"},
