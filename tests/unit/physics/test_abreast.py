@@ -14,6 +14,7 @@ from railquake.march.rows import constant, size, state
 from railquake.march.slots import chosen
 from railquake.march.step import find_contact_forces
 from railquake.march.structure import refresh_hinge
+from railquake.physics.derailment import OVERTURNED
 from railquake.physics.hinge.bouc_wen import (
     LAW,
     Parameters,
@@ -105,8 +106,11 @@ def test_a_lane_that_began_earlier_has_its_own_time_and_ground(bouc_wen):
 def test_a_train_that_leaves_is_released_in_its_lane_alone(bouc_wen):
     one, two, three = bouc_wen
     start = one.start.copy()
-    start[state.VEHICLE_X + 4] += 0.2  # the wheelset, beyond its shift's limit
-    s = abreast((replace(one, start=start), two, three), 5, frames=2)
+    constants = one.constants.copy()
+    # off its rails at once, and overturned before: it is followed no further
+    constants[constant.SLIDE_LIMIT] = start[state.FIRST_TIME + OVERTURNED] = 0.0
+    leaving = replace(one, start=start, constants=constants)
+    s = abreast((leaving, two, three), 5, frames=2)
     assert s[state.ON_TRACK].tolist() == [0.0, 1.0, 1.0]
 
 
