@@ -52,7 +52,7 @@ def differs(single, abreast):
 
 # With uplift (an elastic hinge, factors on the record as it is, for RSN006 on the study's scale),
 # and without.
-UPLIFT = (("RSN182_IMPVALLH2", 2.5), ("RSN171_IMPVALLH1", 3.0), ("RSN006_IMPVALLH2", 2.0 * 3.49))
+UPLIFT = (("RSN182_IMPVALLH2", 2.5), ("RSN171_IMPVALLH1", 4.0), ("RSN006_IMPVALLH2", 2.0 * 3.49))
 NO_UPLIFT = (("RSN020_NCALIFH1", 1.0), ("RSN181_IMPVALLH1", 1.0), ("RSN178_IMPVALLH1", 1.0))
 
 
