@@ -9,11 +9,12 @@ Prints Markdown.
 from __future__ import annotations
 
 import argparse
-import csv
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+
+from suite import HINGES, factors
 
 import railquake as rq
 
@@ -88,7 +89,6 @@ COUNTS: dict[str, dict[str, Any]] = {
 }
 PROFILE = "profiles S1002 and 60E1, standard gauge"
 LEVELS = {"5 %": 1.0, "2 %": 1.38}
-HINGES = ("elastic", "bouc-wen")
 STEP = 2e-5  # s
 
 
@@ -128,13 +128,11 @@ def against(
 
 def counts(records: Path) -> Iterator[str]:
     """How many of the suite's runs derail with each choice."""
-    with open(records / "manifest.csv", newline="", encoding="utf-8") as file:
-        factors = {row["file"]: float(row["scale_factor"]) for row in csv.DictReader(file)}
     for name, changes in {**COUNTS, PROFILE: {}}.items():
         pair = {"wheelrail": "s1002-60e1"} if name == PROFILE else {}
         cases, levels = [], []
         for said, level in LEVELS.items():
-            for file_name, factor in factors.items():
+            for file_name, factor in factors(records).items():
                 for hinge in HINGES:
                     case = rq.scenario(
                         record=records / file_name, scale=level * factor, hinge=hinge, dt=STEP,

@@ -43,17 +43,21 @@ SETS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
+def factors(records: Path) -> dict[str, float]:
+    """The study's factor of each record, by its file, for 5 % in 50 years."""
+    with open(records / "manifest.csv", newline="", encoding="utf-8") as file:
+        return {row["file"]: float(row["scale_factor"]) for row in csv.DictReader(file)}
+
+
 def cases(records: Path, changes: dict[str, Any], step: float) -> dict[tuple[str, float, str], Any]:
     """The set's scenarios by record, level and hinge."""
-    with open(records / "manifest.csv", newline="", encoding="utf-8") as file:
-        factors = {row["file"]: float(row["scale_factor"]) for row in csv.DictReader(file)}
     hinges = ("",) if "support" in changes else HINGES
     return {
         (Path(name).stem, level, hinge): rq.scenario(
             record=records / name, scale=level * factor, dt=step,
             **({"hinge": hinge} if hinge else {}), **changes,
         )
-        for name, factor in factors.items()
+        for name, factor in factors(records).items()
         for level in LEVELS
         for hinge in hinges
     }  # fmt: skip

@@ -87,21 +87,22 @@ def test_uplift_of_one_side(system, patch):
     assert s[state.LEAVING, 0] == 0.0
 
 
-def test_uplifts_are_counted_and_their_end_noted(system):
+def lifted_and_landed(system, *frames):
+    """State after frames, (time, whether a wheel is up)."""
     s = placed(system)
-    for time, up in (
-        (1.0, True),
-        (2.0, True),
-        (3.0, False),
-        (4.0, True),
-        (5.0, False),
-        (6.0, False),
-    ):
+    for time, up in frames:
         now = placed(system)
         if up:
             lift(now, 0)
         s[PATCHES], s[state.TIME] = now[PATCHES], time
         detect_events(s, system.constants, 0)
+    return s
+
+
+def test_uplifts_are_counted_and_their_end_noted(system):
+    s = lifted_and_landed(
+        system, (1.0, True), (2.0, True), (3.0, False), (4.0, True), (5.0, False), (6.0, False)
+    )
     assert s[state.UPLIFTS, 0] == 2.0
     assert s[state.UPLIFT_END, 0] == 5.0
     assert s[state.FIRST_TIME + UPLIFT, 0] == 1.0
@@ -109,13 +110,9 @@ def test_uplifts_are_counted_and_their_end_noted(system):
 
 def test_a_wheel_that_lifts_again_at_once_has_not_come_back(system):
     """Within 50 ms: an impact that bounces, not a second uplift."""
-    s = placed(system)
-    for time, up in ((1.0, True), (1.2, False), (1.24, True), (1.3, False), (1.36, True)):
-        now = placed(system)
-        if up:
-            lift(now, 0)
-        s[PATCHES], s[state.TIME] = now[PATCHES], time
-        detect_events(s, system.constants, 0)
+    s = lifted_and_landed(
+        system, (1.0, True), (1.2, False), (1.24, True), (1.3, False), (1.36, True)
+    )
     assert s[state.UPLIFTS, 0] == 2.0
 
 
