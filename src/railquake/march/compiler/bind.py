@@ -10,11 +10,11 @@ coverage tool can see it.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any
 
 from railquake.march.compiler import cpu, cuda
@@ -125,10 +125,21 @@ def _rebuild(
     done: dict[Law, Law],
 ) -> Law:
     """Copy of ``function`` whose globals hold what was chosen instead."""
+    return _copy(function, _globals(function, target, laws, layout, done))
+
+
+def _globals(
+    function: Law,
+    target: Target,
+    laws: Mapping[Law, Law],
+    layout: Layout,
+    done: dict[Law, Law],
+) -> dict[str, Any]:
+    """Those of its globals that a function uses, with what was chosen instead."""
     assert isinstance(function, FunctionType)
-    names = function.__globals__.copy()
+    names: dict[str, Any] = {}
     for name in function.__code__.co_names:
-        value = names.get(name)
+        value = function.__globals__.get(name)
         if isinstance(value, Numbers):
             numbers = layout.numbers(value.kind)
             names[name] = numbers.module if target.compiled else numbers
@@ -137,10 +148,21 @@ def _rebuild(
             if law.__code__ is function.__code__:
                 law = value  # a law that wraps the one it stands for
             if law not in done:
-                done[law] = _finish(_rebuild(law, target, laws, layout, done), target, layout)
+                used = _globals(law, target, laws, layout, done)
+                done[law] = _finish(law, used, target, layout)
             names[name] = done[law]
+    return names
+
+
+def _copy(function: Law, names: Mapping[str, Any]) -> Law:
+    """The same function with other globals."""
+    assert isinstance(function, FunctionType)
     copy = FunctionType(
-        function.__code__, names, function.__name__, function.__defaults__, function.__closure__
+        function.__code__,
+        {**function.__globals__, **names},
+        function.__name__,
+        function.__defaults__,
+        function.__closure__,
     )
     copy.__module__ = function.__module__
     copy.__qualname__ = function.__qualname__
@@ -148,12 +170,37 @@ def _rebuild(
     return copy
 
 
-def _finish(function: Law, target: Target, layout: Layout) -> Law:
-    """One called function as the target wants it."""
+def _finish(function: Law, names: Mapping[str, Any], target: Target, layout: Layout) -> Law:
+    """One called function as the target wants it, with these globals."""
     if not target.compiled:
-        return function
+        return _copy(function, names)
     compiler = cuda if target is CUDA else cpu
     rows = {"own_state": layout.size.STATE_ROWS, "own_constants": layout.size.CONSTANT_ROWS}
     if function.__name__ in rows:
         return compiler.own_memory(rows[function.__name__], layout.size.LANES)
-    return cuda.compile_for_device(function) if target is CUDA else cpu.compile_called(function)
+    key = (function, target.name, *_dependences(function, names))
+    if key not in _called:
+        copy = _copy(function, names)
+        on_device = target is CUDA
+        _called[key] = (
+            cuda.compile_for_device(copy) if on_device else cpu.compile_called(copy, target.lanes)
+        )
+    return _called[key]
+
+
+# Called functions that are compiled already, by all that they depend on.  The kernels of one
+# process differ in a law or in some rows: what they have in common is compiled once.
+_called: dict[tuple[Any, ...], Law] = {}
+
+
+def _dependences(function: Law, names: Mapping[str, Any]) -> Iterator[tuple[Any, ...]]:
+    """What a function takes from outside: other functions, rows' numbers, fixed values."""
+    assert isinstance(function, FunctionType)
+    used = function.__code__.co_names
+    for name in used:
+        value = names.get(name, function.__globals__.get(name))
+        if isinstance(value, ModuleType) and name in names:
+            rows = vars(value)
+            yield (name, *((row, rows[row]) for row in used if row in rows))
+        elif name in names or isinstance(value, bool | int | float | tuple):
+            yield name, value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import re
 from collections.abc import Callable
 from functools import cache
@@ -103,8 +104,7 @@ def compile_entry(function: Law, folder: Path, lanes: int) -> Law:
 
     dispatcher = numba.njit(nogil=True, **_options())(function)
     _keep_on_disk(dispatcher, folder)
-    if lanes == 1:
-        dispatcher.compile = _without_vectors(dispatcher.compile)
+    dispatcher.compile = _undisturbed(dispatcher.compile, vectors=lanes > 1)
     entry: Law = dispatcher
     return entry
 
@@ -113,11 +113,13 @@ def _options() -> dict[str, Any]:
     return {"error_model": "numpy", "fastmath": set(FASTMATH), "_nrt": False}
 
 
-def _without_vectors(compile_for: Law) -> Law:
-    """Compile without vectorising loops.
+def _undisturbed(compile_for: Law, *, vectors: bool) -> Law:
+    """Compile with loops as vectors or not, and without a collection of garbage meanwhile.
 
     One scenario has no lanes.  What is left are short loops over rows, which are to be unrolled:
-    as vectors they must be gathered, and a step takes a third longer.
+    as vectors they must be gathered, and a step takes a third longer.  The compiler makes millions
+    of small objects, nearly all of which live until it ends: to look through them again and again
+    takes a tenth of its time.
     """
 
     def compiled(signature: Any) -> Any:
@@ -128,11 +130,15 @@ def _without_vectors(compile_for: Law) -> Law:
 
         with global_compiler_lock:
             former = config.LOOP_VECTORIZE
-            config.LOOP_VECTORIZE = 0
+            config.LOOP_VECTORIZE = former and int(vectors)
+            collects = gc.isenabled()
+            gc.disable()
             try:
                 return compile_for(signature)
             finally:
                 config.LOOP_VECTORIZE = former
+                if collects:
+                    gc.enable()
 
     return compiled
 
@@ -171,22 +177,46 @@ def own_memory(rows: int, lanes: int) -> Law:
     return law
 
 
-def compile_called(function: Law) -> Law:
+def compile_called(function: Law, lanes: int) -> Law:
     """Compile one called function so that it dissolves into its caller."""
-    import numba
-
     if function.__name__ in _instructions():
         return _instructions()[function.__name__]
 
-    options = _options()
+    # Called from compiled code only: wrappers for Python and C would take a quarter of the time.
+    options = {**_options(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     if "lanes" in function.__code__.co_varnames[: function.__code__.co_argcount]:
         # loops over lanes must be seen together with the arrays' making, or they are compiled for
         # any row stride: half as fast
-        options["inline"] = "always"
-    else:
-        options["forceinline"] = True
-    law: Law = numba.njit(**options)(function)
+        return _njit(options | {"inline": "always"})(function)
+    law = _njit(options | {"forceinline": True})(function)
+    if lanes == 1:  # abreast a step takes a fifth longer with it
+        law.get_call_template = _whatever_values(law.get_call_template)
     return law
+
+
+def _njit(options: dict[str, Any]) -> Any:
+    import numba
+
+    return numba.njit(**options)
+
+
+def _whatever_values(template_for: Law) -> Law:
+    """Types of a call without the values of its literal integers.
+
+    A law would be compiled once for each side and each patch that it is called with.  Once it has
+    dissolved into its caller the values are known there all the same.
+    """
+
+    def for_types(arguments: Any, named: Any) -> Any:
+        from numba.core import types
+
+        plain: Law = types.unliteral
+        return template_for(
+            tuple(plain(kind) for kind in arguments),
+            {name: plain(kind) for name, kind in named.items()},
+        )
+
+    return for_types
 
 
 @cache
