@@ -131,20 +131,23 @@ _GRID: Laws = {
     contact.fetch_cells: contact.no_polynomials,
     contact.patch: contact.patch_by_grid,
 }
+_WRITTEN_OUT: Laws = {
+    elementary.exponential: elementary.exponential_polynomial,
+    elementary.power: elementary.power_polynomial,
+}
 _ABREAST: Laws = {
     frames.look_again: frames.look_again_abreast,
     contact.flange_near: contact.any_flange_near,
     contact.press_patch: contact.evaluated_patch,
     contact.press_flange: contact.bearing_flanges,
-    # what a vector unit can do
-    elementary.exponential: elementary.exponential_polynomial,
-    elementary.power: elementary.power_polynomial,
+    **_WRITTEN_OUT,
 }
 _ALONE: Laws = {
     frames.look_again: frames.nothing_again,
     contact.flange_near: contact.every_flange_near,
     contact.press_patch: contact.closed_patch,
     contact.press_flange: contact.every_flange,
+    **_WRITTEN_OUT,
 }
 
 SLOTS: tuple[Slot, ...] = (

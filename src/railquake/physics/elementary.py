@@ -1,7 +1,7 @@
 """Elementary functions written out, so that a compiler may vectorise them.
 
-`exponential` and `power` are the library's own for one scenario; many abreast are bound to
-`exponential_polynomial` and `power_polynomial`, which a vector unit can do.
+`exponential` and `power` are the library's own; engines are bound to `exponential_polynomial` and
+`power_polynomial`, which a vector unit can do and which cost one scenario a tenth of its step less.
 """
 
 import math

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import gc
+import os
 import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from railquake.errors import InputError
 from railquake.march.compiler.cache import source_hash
 from railquake.march.compiler.target import Target
 
@@ -42,11 +44,24 @@ def lockstep_target() -> Target:
 def vector_doubles() -> int:
     """Doubles in the vectors that the compiler uses on this machine.
 
-    They may be fewer than the machine has room for: LLVM keeps to 256 bits on many processors with
-    AVX-512, where wider vectors slow the clock.  So it is asked, by a loop that it vectorises.
+    They may be fewer than the machine has room for.  So it is asked, by a loop that it vectorises.
     """
     code = _loop_in_assembly()
     return next((doubles for doubles in (8, 4, 2) if vector_instructions(code, doubles)), 1)
+
+
+@cache
+def _preferred_width() -> str:
+    """Attribute of a function whose vectors are to be as wide as the processor's.
+
+    For many processors with AVX-512 LLVM keeps to 256 bits, since wider vectors slowed the clock of
+    the first of them; a step of eight scenarios takes three quarters of the time that two steps of
+    four do (`benchmarks/vector_width.py`).  Where it does not, ``RAILQUAKE_VECTOR_BITS=256``.
+    """
+    bits = os.environ.get("RAILQUAKE_VECTOR_BITS") or "512"
+    if bits not in ("256", "512"):
+        raise InputError(f"RAILQUAKE_VECTOR_BITS is {bits!r}; it can be 256 or 512")
+    return f'"prefer-vector-width"="{bits}"'
 
 
 def vector_instructions(code: str, doubles: int) -> int:
@@ -61,7 +76,7 @@ VECTORS = {
 }
 
 _LOOP = """
-define void @thrice(double* noalias %x, i64 %n) {
+define void @thrice(double* noalias %x, i64 %n) WIDTH {
 entry:
   %some = icmp sgt i64 %n, 0
   br i1 %some, label %loop, label %exit
@@ -89,7 +104,8 @@ def _loop_in_assembly() -> str:
 
     with global_compiler_lock:
         library = cpu_target.target_context.codegen().create_library("width")
-        library.add_llvm_module(llvmlite.binding.parse_assembly(_LOOP))
+        loop = llvmlite.binding.parse_assembly(_LOOP.replace("WIDTH", _preferred_width()))
+        library.add_llvm_module(loop)
         library.finalize()
         return str(library.get_asm_str())
 
@@ -146,7 +162,8 @@ def _undisturbed(compile_for: Law, *, vectors: bool) -> Law:
 def own_memory(rows: int, lanes: int) -> Law:
     """Function that gives a compiled entry an array of its own, shape (rows, lanes).
 
-    It lies on the stack: its row stride is known, and that nothing else points there.
+    It lies on the stack: its row stride is known, and that nothing else points there.  With lanes
+    the entry is one whose vectors are to be wide.
     """
     import numba  # whole before its parts: another thread may be importing it as well
     from llvmlite import ir
@@ -156,6 +173,9 @@ def own_memory(rows: int, lanes: int) -> Law:
 
     def typed(typing_context: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            if lanes > 1:
+                # the set's own `add` knows none that has a value
+                set.add(builder.function.attributes, _preferred_width())
             with builder.goto_entry_block():
                 place = builder.alloca(ir.ArrayType(ir.DoubleType(), rows * lanes))
                 place.align = 64
