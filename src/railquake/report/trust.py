@@ -78,14 +78,14 @@ def _said(context: Context) -> str:
     paid = int((shares > FORWARD_SHARE).sum())
     contact = over["contact_energy_residual"]
     lifted = contact & (done["off_rail_time_s"].to_numpy(dtype=float) > 0.0)
-    gains = int((done["contact_energy_residual"].to_numpy(dtype=float) < -GAIN).sum())
+    gains = int((done["contact_gain"].to_numpy(dtype=float) > GAIN).sum())
     caption = (
         "What each run’s energy balances leave over: of the whole, relative to all that is "
         "dissipated, and of the contact, relative to what impact and creep lose. The second is the "
         "one to watch: the first closes even where a contact force is wrong. Beyond the bars of "
         f"the program’s own tests lie {int(over['energy_residual'].sum())} and "
         f"{int(contact.sum())} of {len(done):,} runs; the contact gains more than "
-        f"{100 * GAIN:g} % in {gains}."
+        f"{100 * GAIN:g} % of all that is dissipated in {gains}."
     )
     if lifted.any():
         caption += (

@@ -18,7 +18,7 @@ BARS = {
 }
 """Of the residuals' magnitudes, by the keys of their measures."""
 
-GAIN = 0.01  # of the contact's balance: a contact that makes energy
+GAIN = 0.01  # of the contact, over all that is dissipated: it makes energy
 FORWARD_SHARE = 0.05
 
 
@@ -39,9 +39,13 @@ def doubts(response: Response) -> tuple[str, ...]:
     }
     said = []
     for key, (value, of) in found.items():
-        bar = GAIN if key == "contact_energy_residual" and value < 0.0 else BARS[key]
-        if not abs(value) <= bar:  # NaN, too
-            said.append(f"{key} is {100.0 * value:.3g} % {of}, beyond {100.0 * bar:g} %")
+        if not abs(value) <= BARS[key]:  # NaN, too
+            said.append(f"{key} is {100.0 * value:.3g} % {of}, beyond {100.0 * BARS[key]:g} %")
+    if audit.contact_gain > GAIN:
+        said.append(
+            f"the contact gains {100.0 * audit.contact_gain:.3g} % of what is dissipated, beyond "
+            f"{100.0 * GAIN:g} %"
+        )
     share = audit.forward_share
     if share > FORWARD_SHARE:
         said.append(

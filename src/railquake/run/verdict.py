@@ -93,10 +93,10 @@ def derailment_mode(ending: Ending) -> str | None:
     if not found:
         return None
     first = min(found, key=lambda one: one.time_s)
-    last = max(found, key=lambda one: one.time_s)
-    is_combined = (
-        last.event == EVENTS[OVERTURNED] != first.event
-        and last.time_s - first.time_s <= COMBINED_WITHIN
+    is_combined = any(
+        one.event == EVENTS[OVERTURNED] != first.event
+        and one.time_s - first.time_s <= COMBINED_WITHIN
+        for one in found
     )
     return f"{'combined' if is_combined else first.event} {first.side}"
 

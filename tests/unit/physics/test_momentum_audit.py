@@ -253,7 +253,13 @@ MOVED = MomentumAudit(0.0, 0.0, 1.0, 1.0, 0.0, mass=1.0)
         ),
         (
             {"contact_residual": -1.8}, {},
-            ("contact_energy_residual is -1.5 % of what impact and creep lose, beyond 1 %",),
+            ("the contact gains 1.5 % of what is dissipated, beyond 1 %",),
+        ),
+        ({"contact_residual": -1.8, "hinge": 80.0}, {}, ()),
+        (
+            {"contact_residual": -4.2, "hinge": 80.0}, {},
+            ("contact_energy_residual is -3.5 % of what impact and creep lose, beyond 3 %",
+             "the contact gains 2.1 % of what is dissipated, beyond 1 %"),
         ),
         (
             {"whole_residual": -0.24}, {},
