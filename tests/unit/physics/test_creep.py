@@ -16,13 +16,15 @@ LAWS = sorted(name for name in CREEP_LAWS if CREEP_LAWS[name].saturation is not 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.25, 0.5])
 def test_coefficients_are_kalkers_own_at_the_nodes_of_his_table(shared, poisson):
+    """To the last digit; but at a/b 10, the mean of his and CONTACT's, C23 2 % apart."""
     with open(shared / "oracles" / "kalker_table.csv") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     for row in rows:
         ratio = float(row["ratio"]) if row["part"] == "a/b<=1" else 1.0 / float(row["ratio"])
         found = kalker_coefficients(np.array([ratio]), poisson)
         for name, value in zip(("C11", "C22", "C23"), found, strict=True):
-            assert value[0] == pytest.approx(float(row[f"{name}_nu{poisson:g}"]), rel=1e-9)
+            near = 0.01 if ratio > 9.0 else 1e-9
+            assert value[0] == pytest.approx(float(row[f"{name}_nu{poisson:g}"]), rel=near)
 
 
 def contacts_coefficients(shared):
@@ -32,18 +34,12 @@ def contacts_coefficients(shared):
 
 @pytest.mark.parametrize("name", ["C11", "C22", "C23"])
 def test_coefficients_are_contacts_from_treads_to_flanges(shared, name):
-    """Within 1 % from a/b 0.1 to 20.
-
-    Kalker's own C23 at a/b 10 is 2 % above CONTACT's, and at 5 to 10 the 2.2 % that this makes.
-    """
+    """Within 1 % from a/b 0.1 to 20."""
     rows = contacts_coefficients(shared)
     ratio = np.array([float(row["a_over_b"]) for row in rows])
     theirs = np.array([float(row[name]) for row in rows])
     found = dict(zip(("C11", "C22", "C23"), kalker_coefficients(ratio, 0.28), strict=True))[name]
-    off = np.abs(found / theirs - 1.0)
-    kalkers_bias = (ratio > 5.0) & (ratio <= 10.0) if name == "C23" else np.zeros_like(off, bool)
-    assert off[~kalkers_bias].max() < 0.01
-    assert off[kalkers_bias].max(initial=0.0) < 0.0225
+    assert found == pytest.approx(theirs, rel=0.01)
 
 
 def test_coefficients_beyond_the_table_keep_poissons_proportions_and_the_last_slope():

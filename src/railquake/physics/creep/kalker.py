@@ -1,7 +1,7 @@
 """Creepage coefficients of Kalker's linear theory.
 
-Source: Kalker (1990), Three-Dimensional Elastic Bodies in Rolling Contact, table E.3, which ends at
-a/b 10; for the longer ellipses of flanges the program CONTACT.
+Source: Kalker (1990), Three-Dimensional Elastic Bodies in Rolling Contact, table E.3, whose last
+entries are at a/b 5 and 10; for the longer ellipses of flanges the program CONTACT.
 """
 
 from typing import Any
@@ -47,18 +47,18 @@ _C23 = np.array(
 )  # fmt: skip
 
 
-# Beyond the table, at Poisson's ratio 0.28: flanges lie at a/b 9 to 24.  From CONTACT (Vollebregt
-# and Kalker, exact half-space theory; open source version, revision 2707), its grid's error
-# extrapolated away.
-_FLANGE_A_OVER_B = np.array([12.0, 15.0, 18.0, 20.0])
+# Flanges lie at a/b 9 to 24.  At Poisson's ratio 0.28, from CONTACT (Vollebregt and Kalker, exact
+# half-space theory; open source version, revision 2707), its grid's error extrapolated away.
+_FLANGE_A_OVER_B = np.array([6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 18.0, 20.0])
 _FLANGE = np.array(
     [
-        (13.2825, 15.4144, 17.4347, 18.7538),
-        (14.925, 17.5407, 20.0344, 21.6623),
-        (18.1936, 23.806, 29.6687, 33.7637),
+        (8.7525, 9.5655, 10.3456, 11.0625, 11.8142, 13.2825, 15.4144, 17.4347, 18.7538),
+        (9.3707, 10.367, 11.3215, 12.2021, 13.1242, 14.925, 17.5407, 20.0344, 21.6623),
+        (8.2592, 9.8248, 11.4446, 12.9678, 14.6655, 18.1936, 23.806, 29.6687, 33.7637),
     ]
 )
 _FLANGE_POISSON = 0.28
+_BOTH = 4  # of them, a/b 10, stands in Kalker's table as well
 LARGEST_A_OVER_B = 40.0
 
 
@@ -75,21 +75,26 @@ def kalker_coefficients(a_over_b: Array, poisson: float) -> tuple[Array, Array, 
     Returns
     -------
     C11, C22, C23 : array
-        Quadratic in Poisson's ratio, as Kalker says, and log C linear in log(a/b) between the
-        nodes: read linearly in b/a, as his table is printed, they would be too large by up to 7 %
-        (C23: 17 %) between a/b 5 and 10.  Beyond 10 Poisson's ratio acts as it does at 10, and
-        beyond 20 the last slope goes on.
+        Kalker's to a/b 5, CONTACT's from 6 on; at 10 both are given, C23 2 % apart, and their
+        geometric mean stands.  Quadratic in Poisson's ratio, as Kalker says, whose action beyond 5
+        is that of his table at 5 and 10; and log C linear in log(a/b) between the nodes: read
+        linearly in b/a, as his table is printed, they would be too large by up to 7 % (C23: 17 %)
+        between a/b 5 and 10.  Beyond 20 the last slope goes on.
     """
     lagrange, at_flanges = _quadratic(poisson), _quadratic(_FLANGE_POISSON)
-    knots = np.log([*KALKER_A_OVER_B, *_FLANGE_A_OVER_B, LARGEST_A_OVER_B])
+    table_place, flange_place = np.log(KALKER_A_OVER_B), np.log(_FLANGE_A_OVER_B)
+    end = np.log(LARGEST_A_OVER_B)
+    knots = [*table_place[:-1], *flange_place, end]
     place = np.log(np.asarray(a_over_b, dtype=float))
     found = []
     for table, flange in zip((_C11, _C22, _C23), _FLANGE, strict=True):
-        beyond = flange * (table[-1] @ lagrange) / (table[-1] @ at_flanges)
-        values = np.log([*(table @ lagrange), *beyond])
-        slope = (values[-1] - values[-2]) / (knots[-2] - knots[-3])
-        last = values[-1] + slope * (knots[-1] - knots[-2])
-        found.append(np.exp(np.interp(place, knots, [*values, last])))
+        own = np.log(table @ lagrange)
+        action = own - np.log(table @ at_flanges)
+        beyond = np.log(flange) + np.interp(flange_place, table_place, action)
+        beyond[_BOTH] = 0.5 * (beyond[_BOTH] + own[-1])
+        slope = (beyond[-1] - beyond[-2]) / (flange_place[-1] - flange_place[-2])
+        last = beyond[-1] + slope * (end - flange_place[-1])
+        found.append(np.exp(np.interp(place, knots, [*own[:-1], *beyond, last])))
     return found[0], found[1], found[2]
 
 
