@@ -3,6 +3,7 @@
 import os
 import stat
 import threading
+from pathlib import Path
 
 import pytest
 
@@ -132,3 +133,20 @@ def test_the_working_folder_may_be_written_to(tmp_path, monkeypatch):
     with whole_file(Path("b")) as part:
         part.write_text("2")
     assert names(tmp_path) == ["a", "b"]
+
+
+@pytest.mark.skipif(not Path("/dev/null").exists(), reason="no such device")
+@pytest.mark.parametrize("kind", ["fifo", "folder", "device"])
+def test_what_is_no_file_is_not_replaced_by_one(tmp_path, kind):
+    """A picture written to /dev/null by an administrator must leave the device a device."""
+    path = tmp_path / "a"
+    if kind == "fifo":
+        os.mkfifo(path)
+    elif kind == "folder":
+        path.mkdir()
+    else:
+        path.symlink_to("/dev/null")
+    with pytest.raises(OSError, match="is a device, a pipe or a folder"), whole_file(path):
+        raise AssertionError("nothing to write to")
+    assert names(tmp_path) == ["a"]
+    assert not path.is_file()

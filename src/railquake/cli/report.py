@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from railquake.cli.application import app
+from railquake.cli.shared import say_on_stderr
 
 __all__ = ["report_with_notes"]
 
@@ -42,8 +43,5 @@ def report_with_notes(folder: Path, out: Path | None = None, hazard: str | None 
     """Write a report, and say on standard error what takes long."""
     from railquake.report import write_report
 
-    def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
-
-    page = write_report(folder, out, hazard=hazard, notify=say)
+    page = write_report(folder, out, hazard=hazard, notify=say_on_stderr)
     typer.echo(f"report                   {page.resolve()}")

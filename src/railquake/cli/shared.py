@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -27,6 +27,7 @@ __all__ = [
     "print_json",
     "progress_bar",
     "read_column",
+    "say_on_stderr",
     "terminal_bar",
     "write_file",
     "write_text",
@@ -47,6 +48,12 @@ Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
 Picture = Annotated[Path | None, typer.Option("--picture", help="Picture (PNG) to write.")]
 
 
+def say_on_stderr(text: str) -> None:
+    """Say something that is no result; where it cannot be said, nothing is lost."""
+    with suppress(OSError):
+        typer.echo(f"railquake: {text}", err=True)
+
+
 @contextmanager
 def terminal_bar(
     columns: Callable[[], Sequence[str | ProgressColumn]],
@@ -55,11 +62,8 @@ def terminal_bar(
 
     ``columns`` makes the bar's columns; called on a terminal only, since rich takes long to import.
     """
-
-    def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
-
-    if not sys.stderr.isatty():
+    say = say_on_stderr
+    if sys.stderr is None or not sys.stderr.isatty():
         yield None, say
         return
     from rich.console import Console

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.cli.application import app
-from railquake.cli.shared import Json, Out, terminal_bar
+from railquake.cli.shared import Json, Out, say_on_stderr, terminal_bar
 from railquake.cli.status import Stopped
 
 if TYPE_CHECKING:
@@ -173,10 +173,7 @@ def merge(
     """
     from railquake.study import merge_results
 
-    def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
-
-    results = merge_results(folders, out, notify=say)
+    results = merge_results(folders, out, notify=say_on_stderr)
     typer.echo(f"{len(results.table)} of {results.design.size} runs: {out / 'runs.parquet'}")
 
 

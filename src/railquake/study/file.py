@@ -22,9 +22,11 @@ from railquake.study.distributions import Sampling
 from railquake.study.parsing import parse_axes, parse_sampling
 from railquake.suite import SUITES, Suite, SuiteMember, load_suite
 
-__all__ = ["AUTO", "FILE", "StudyInputs"]
+__all__ = ["AUTO", "FILE", "MADE_BY", "StudyInputs"]
 
 AUTO = "auto"  # a time step that is chosen for the study
+# What a study's folder notes of the program that made its rows, in words.
+MADE_BY = {"railquake": "railquake", "physics": "physics"}
 _SECTIONS = ("base", "suite", "axes", "sampling")
 _CASE = Place((Scenario,))
 # An axis' name is the path of an input: what excludes each other in a case does so here, too.
@@ -94,7 +96,7 @@ class StudyInputs:
         InputError
             Naming the field, what was found and what to write.
         """
-        refuse_unknown((key for key in tables if key != "railquake"), _SECTIONS, f"{where}: ")
+        refuse_unknown((key for key in tables if key not in MADE_BY), _SECTIONS, f"{where}: ")
         if "base" not in tables:
             raise InputError(
                 f'{where}: base: missing; write e.g. [base] case = "case.toml", or the tables of a '

@@ -13,7 +13,10 @@ from railquake.errors import InputError
 from railquake.files import prepare_folder, random_name, set_aside, whole_file
 from railquake.inputs.toml import dumps, read_toml
 from railquake.messages import reason, shown
+from railquake.parts import sweep
+from railquake.run.assess import physics
 from railquake.run.time_step import TimeStep
+from railquake.study.file import MADE_BY
 from railquake.study.table import distinct, in_columns
 
 if TYPE_CHECKING:
@@ -21,7 +24,14 @@ if TYPE_CHECKING:
 
     from railquake.study.file import StudyInputs
 
-__all__ = ["STUDY_FILE", "TABLE_FILE", "ResultsFolder", "no_note", "read_parquet"]
+__all__ = [
+    "STUDY_FILE",
+    "TABLE_FILE",
+    "ResultsFolder",
+    "made_by_this",
+    "no_note",
+    "read_parquet",
+]
 
 STUDY_FILE = "study.toml"
 TABLE_FILE = "runs.parquet"
@@ -62,19 +72,27 @@ class ResultsFolder:
         self.parts = path / PARTS
         self.kept = 0  # rows of this execution that are on the disk
 
-    def prepare(self, study: StudyInputs, notify: Callable[[str], None]) -> None:
+    def prepare(
+        self, study: StudyInputs, notify: Callable[[str], None], made_by: Mapping[str, str]
+    ) -> None:
         """Make the folder, or make sure that it holds results of this very study.
+
+        Parameters
+        ----------
+        study : StudyInputs
+        notify : callable
+            Called with a line if its rows were made by another version.
+        made_by : mapping
+            What makes the rows; see `made_by_this`.
 
         Raises
         ------
         InputError
             If it holds another study, or something else, or cannot be written.
         """
-        from railquake.version import __version__
-
         prepare_folder(self.path)
         file = self.path / STUDY_FILE
-        tables = {"railquake": __version__, **study.to_dict()}
+        tables = {**made_by, **study.to_dict()}
         if file.exists():
             self.compare(tables, notify)
         elif self.path.exists() and any(
@@ -86,6 +104,8 @@ class ResultsFolder:
             )
         try:
             self.parts.mkdir(parents=True, exist_ok=True)
+            for folder in (self.path, self.parts):
+                sweep(folder)  # what an execution that was killed was writing
             if not file.exists():
                 text = "# Written by railquake: the study of this folder.\n" + dumps(tables)
                 with whole_file(file, durable=True) as part:
@@ -103,8 +123,7 @@ class ResultsFolder:
         """
         file = self.path / STUDY_FILE
         old, new = dict(read_toml(file)), dict(tables)
-        made_by = old.pop("railquake", None)
-        version = new.pop("railquake", None)
+        former, now = ({key: table.pop(key, None) for key in MADE_BY} for table in (old, new))
         # written and read once, so that both have the same form
         differences = _differences(old, _as_read(new))
         if differences:
@@ -113,8 +132,14 @@ class ResultsFolder:
                 f"--out {self.path}: holds another study; {'; '.join(differences[:4])}{more}; "
                 "take another folder, or change the study back"
             )
-        if made_by is not None and version is not None and made_by != version:
-            notify(f"rows in {self.path} were made by railquake {made_by}, new ones by {version}")
+        for key, words in MADE_BY.items():
+            if None not in (former[key], now[key]) and former[key] != now[key]:
+                notify(f"rows in {self.path} were made by {words} {former[key]}, new ones by "
+                       f"{now[key]}; for rows of one kind take another folder")  # fmt: skip
+
+    def made_by(self) -> dict[str, str]:
+        """What made its rows, as far as it was noted; see `made_by_this`."""
+        return {k: v for k, v in read_toml(self.path / STUDY_FILE).items() if k in MADE_BY}
 
     def add(self, rows: Sequence[Mapping[str, Any]], schema: pa.Schema) -> None:
         """Keep finished rows: a new part.
@@ -263,6 +288,13 @@ class ResultsFolder:
         found = self.time_step()
         assert found is not None  # it has just been written
         return found
+
+
+def made_by_this() -> dict[str, str]:
+    """What makes rows here: the version of railquake, and that of its physics and compiler."""
+    from railquake.version import __version__
+
+    return {"railquake": __version__, "physics": physics()}
 
 
 def no_note(_: str) -> None:

@@ -160,11 +160,12 @@ def merge_results(
         raise InputError("merge: give the folders of the shards")
     target = ResultsFolder(Path(out))
     first = open_results(folders[0])
-    target.prepare(first.study, say)
+    made_by = ResultsFolder(first.folder).made_by()
+    target.prepare(first.study, say, made_by)
     step = ResultsFolder(first.folder).time_step()
     for folder in folders:
         results, source = open_results(folder), ResultsFolder(Path(folder))
-        target.compare(results.study.to_dict(), say)
+        target.compare({**source.made_by(), **results.study.to_dict()}, say)
         if source.time_step() != step:
             raise InputError(f"{folder}: its time step is not that of {folders[0]}; run it again")
         if target.path.resolve() == source.path.resolve():

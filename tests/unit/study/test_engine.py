@@ -229,7 +229,7 @@ def test_a_stop_leaves_what_has_finished(tmp_path):
 
 def test_batches_stop_when_they_are_told():
     data = tables(**{"motion.synthetic.duration": ["600 s"]})
-    batch = batches.Batch("stop", study(data), None, (0,))
+    batch = batches.Batch("stop", study(data), None, (0,), batches.physics())
     stop = threading.Event()
     threading.Timer(0.5, stop.set).start()
     begin = time.monotonic()
