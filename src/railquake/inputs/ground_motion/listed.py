@@ -1,0 +1,92 @@
+"""A line "NPTS DT" and the values in any layout: the text of eqsig and of OpenSees' examples.
+
+"400 0.0100" stands alone on the first line of numbers; names and remarks may stand above it.
+"""
+
+from __future__ import annotations
+
+import re
+
+from railquake.inputs.ground_motion import units as unit_table
+from railquake.inputs.ground_motion.text import (
+    Channel,
+    Options,
+    RecordFile,
+    Series,
+    check_dt,
+    cut_token,
+    free_numbers,
+    no_marks,
+    to_float,
+    unit_of_file,
+    whole_number,
+)
+
+HEADER_LINES = 20
+LONGEST_STEP = 0.5
+"""A larger second number is no time step of a record, s."""
+
+_HEAD = re.compile(r"^\s*([0-9]{1,9})[\s,]+([0-9]*\.[0-9]+(?:[eE][+-]?[0-9]+)?)\s*(?:s|sec)?\s*$")
+
+
+def is_listed(record: RecordFile) -> bool:
+    """Whether the first line of numbers is a count and a step, and others are unlike it."""
+    index = _head_line(record)
+    if index is None or index + 1 >= len(record.lines):
+        return False
+    below = [line.split() for line in record.lines[index + 1 : index + 4] if line.strip()]
+    # Two numbers a line below are two columns, of which this is the first row, unless the count
+    # is that of all values.
+    if below and all(len(row) == 2 for row in below):
+        tokens = sum(len(line.split()) for line in record.lines[index + 1 :])
+        return tokens == int(record.lines[index].replace(",", " ").split()[0])
+    return bool(below)
+
+
+def listed_channels(record: RecordFile, options: Options) -> list[Channel]:
+    """The one channel."""
+    return [Channel(None, "", lambda: read_listed(record, options))]
+
+
+def read_listed(record: RecordFile, options: Options) -> Series:
+    """Read a list of values headed by their number and time step.
+
+    Raises
+    ------
+    InputError
+        If the number of values is another, or no unit is known.
+    """
+    index = _head_line(record)
+    assert index is not None, "is_listed comes first"
+    match = _HEAD.match(record.lines[index])
+    assert match is not None
+    count = whole_number(record, match.group(1), "number of values", index)
+    dt = check_dt(record, to_float(match.group(2)) or 0.0, options, index)
+    stated = unit_table.unit_statements(record.lines[:index])
+    values = free_numbers(record, index + 1)
+    if values.size != count:
+        raise record.fault(
+            f"line {index + 1} announces {count} values at steps of {dt:g} s, and {values.size} "
+            "follow; the file is cut off, or that line means something else"
+        )
+    last = record.lines[-1].split()
+    appended = len(last) == 1 and to_float(last[0]) == 0.0
+    if cut_token(record) is not None and not appended:
+        raise record.fault(
+            "the last value is cut off; fetch the file again", len(record.lines) - 1
+        )
+    factor = unit_of_file(record, stated[0] if stated else None, options)
+    no_marks(record, values)
+    note = f"'{match.group(0).strip()}' in line {index + 1} taken for number and step of the values"
+    return Series(dt, values * factor, (note,))
+
+
+def _head_line(record: RecordFile) -> int | None:
+    for index, line in enumerate(record.lines[:HEADER_LINES]):
+        fields = line.replace(",", " ").split()
+        if fields and all(to_float(field) is not None for field in fields):
+            match = _HEAD.match(line)
+            if match is None or not 0.0 < (to_float(match.group(2)) or 0.0) <= LONGEST_STEP:
+                return None
+            return index if int(match.group(1)) >= 2 else None
+    return None
