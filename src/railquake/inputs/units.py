@@ -61,6 +61,8 @@ galileo = 0.01 * meter / second ** 2 = Gal = gal
 hertz = 1 / second = Hz
 newton = kilogram * meter / second ** 2 = N
 newton_meter = newton * meter = Nm
+kilogram_force = 9.80665 * newton = kgf
+tonne_force = 9806.65 * newton = tf
 pound_force = 4.4482216152605 * newton = lbf
 kip = 4448.2216152605 * newton = kips
 slug = 14.593902937206364 * kilogram

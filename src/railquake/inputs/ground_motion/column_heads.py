@@ -64,9 +64,12 @@ def read_heads(
     Names stand in the last line above the numbers, if it has so many; units in brackets, behind an
     underscore, or in a line "Units: s, g".
     """
-    names, units, certain = [""] * count, [None] * count, [True] * count
+    names, certain = [""] * count, [True] * count
+    units: list[str | None] = [None] * count
     named = next((i for i in range(start - 1, -1, -1) if _bare(record.lines[i])), None)
-    if named is not None and not _UNITS_LINE.match(record.lines[named]):
+    if named is not None and not any(
+        pattern.search(record.lines[named]) for pattern in (_UNITS_LINE, _STEP, _RATE, _COUNT)
+    ):
         line = _bare(record.lines[named])
         bracketed = _BRACKETS.findall(line)
         if len(bracketed) == count:

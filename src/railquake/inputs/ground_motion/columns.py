@@ -41,7 +41,7 @@ HEADER_LINES = 200
 """The first row of numbers is looked for within this many lines."""
 COMPONENTS = 3
 """So many columns without names or a time are components; others are a list of values."""
-MOST_LOOKED_AT, FEWEST_STEPS = 2000, 8
+MOST_LOOKED_AT, FEWEST_STEPS = 2000, 5
 """Rows in which a time is looked for, and steps below which nothing can be told."""
 TIME_INCREASES = 0.8
 """Share of the steps that increase in a column of time, damaged ones included."""
@@ -191,7 +191,9 @@ def _factor(
     if written is not None or stated is None:
         return unit_of_file(record, written, options), ()
     if options.units is not None:
-        remark = f"the unit {options.units} given is used; the column's name {shown(name)} says none"
+        remark = (
+            f"the unit {options.units} given is used; the column's name {shown(name)} says none"
+        )
         return unit_of_file(record, None, options), (remark,)
     remark = (
         f"unit {stated} taken from the column's name {shown(name)}, which may mean something else: "
@@ -225,7 +227,11 @@ def _table(
     separator = _separator(record.lines[start])
     block = record.lines[start:]
     quoted = any('"' in line for line in block)
-    if separator is not None and not quoted and {line.count(separator) for line in block} == {count - 1}:
+    if (
+        separator is not None
+        and not quoted
+        and {line.count(separator) for line in block} == {count - 1}
+    ):
         # The usual CSV, in one go: the numbers may keep the blanks around them.
         tokens = separator.join(block).split(separator)
         rows = list(range(start, len(record.lines)))

@@ -76,9 +76,7 @@ def read_dyna(record: RecordFile, options: Options) -> Series:
             "wrong: fetch it again"
         )
     if cut_token(record) is not None:
-        raise record.fault(
-            "the last value is cut off; fetch the file again", len(record.lines) - 1
-        )
+        raise record.fault("the last value is cut off; fetch the file again", len(record.lines) - 1)
     no_marks(record, values)
     notes: tuple[str, ...] = ()
     if header.get("baseline_correction", "").upper() == "BASELINE NOT REMOVED":

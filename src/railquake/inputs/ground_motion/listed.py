@@ -72,9 +72,7 @@ def read_listed(record: RecordFile, options: Options) -> Series:
     last = record.lines[-1].split()
     appended = len(last) == 1 and to_float(last[0]) == 0.0
     if cut_token(record) is not None and not appended:
-        raise record.fault(
-            "the last value is cut off; fetch the file again", len(record.lines) - 1
-        )
+        raise record.fault("the last value is cut off; fetch the file again", len(record.lines) - 1)
     factor = unit_of_file(record, stated[0] if stated else None, options)
     no_marks(record, values)
     note = f"'{match.group(0).strip()}' in line {index + 1} taken for number and step of the values"

@@ -71,9 +71,7 @@ def _read(record: RecordFile, options: Options, index: int, number: int, name: s
     header = key_values(record.lines[:index])
     interval = header.get("sampling interval (sec)", "")
     if not re.fullmatch(NUMBER, interval):
-        raise record.fault(
-            f"SAMPLING INTERVAL (sec) is {shown(interval)}; a number of s is needed"
-        )
+        raise record.fault(f"SAMPLING INTERVAL (sec) is {shown(interval)}; a number of s is needed")
     dt = check_dt(record, to_float(interval) or 0.0, options)
     count = whole_number(record, header.get("number of data", ""), "NUMBER OF DATA")
     stated = next((key for key in header if key.startswith("raw pga values")), "")
@@ -94,9 +92,7 @@ def _read(record: RecordFile, options: Options, index: int, number: int, name: s
             "header wrong: fetch it again"
         )
     if cut_token(record) is not None:
-        raise record.fault(
-            "the last value is cut off; fetch the file again", len(record.lines) - 1
-        )
+        raise record.fault("the last value is cut off; fetch the file again", len(record.lines) - 1)
     values = table[:, number - 1]
     no_marks(record, values)
     peaks = {key.upper(): to_float(text) for key, text in _PEAKS.findall(header.get(stated, ""))}

@@ -1,4 +1,4 @@
-"""A record's file as lines of text: read whole, unpacked if need be, and refused if it is no text."""
+"""A record's file as lines: read whole, unpacked if need be, and refused if it is no text."""
 
 from __future__ import annotations
 

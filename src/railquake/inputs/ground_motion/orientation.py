@@ -18,7 +18,8 @@ _WORDS = re.compile(r"up|down|dwn|dn|vert\w*|ver|vrt|u-?d|ud[12]|[uvz]|v1", re.I
 _SEED = re.compile(r"[a-z][hlgn][zne123rt]", re.IGNORECASE)
 """Band, instrument (H, L: seismometer; G, N: accelerometer), orientation."""
 _AZIMUTH = re.compile(
-    r"\b[0-9]{1,3}\s*(?:deg\w*|\u00b0)|\b[ns]\s*[0-9]{1,2}\s*[ew]\b|^\s*[0-9]{1,3}\s*$", re.IGNORECASE
+    r"\b[0-9]{1,3}\s*(?:deg\w*|\u00b0)|\b[ns]\s*[0-9]{1,2}\s*[ew]\b|^\s*[0-9]{1,3}\s*$",
+    re.IGNORECASE,
 )
 _HORIZONTAL = re.compile(
     r"n-?s|e-?w|s-?n|w-?e|[nesw]|north|east|south|west|h[12]|x|y|long\w*|tran\w*|rad\w*",

@@ -10,7 +10,9 @@ __all__ = ["binary_kind", "not_a_record", "why_no_numbers"]
 
 _STAMP = re.compile(r"^\W*[0-9]{2,4}[-/.][0-9]{1,2}[-/.][0-9]{1,4}[ T]+[0-9]{1,2}:[0-9]{2}")
 _CLOCK = re.compile(r"^\W*[0-9]{1,2}:[0-9]{2}(?::[0-9]{2})?(?:\.[0-9]+)?\s*[;,\s]")
-_COMMA = re.compile(r"^\s*[+-]?[0-9]+,[0-9]+(?:[eE][+-]?[0-9]+)?(?:[;\s]\s*[+-]?[0-9]+(?:,[0-9]+)?(?:[eE][+-]?[0-9]+)?)*;?\s*$")
+_COMMA = re.compile(
+    r"^\s*[+-]?[0-9]+,[0-9]+(?:[eE][+-]?[0-9]+)?(?:[;\s]\s*[+-]?[0-9]+(?:,[0-9]+)?(?:[eE][+-]?[0-9]+)?)*;?\s*$"
+)
 _SPECTRA = re.compile(r"^\s*Response and Fourier amplitude spectra", re.IGNORECASE)
 _SAC_VERSION_AT, _SAC_VERSIONS = 304, (6, 7)
 
@@ -28,7 +30,7 @@ def binary_kind(data: bytes) -> str | None:
         )
     version = data[_SAC_VERSION_AT : _SAC_VERSION_AT + 4]
     for order in ("little", "big"):
-        if len(version) == 4 and int.from_bytes(version, order) in _SAC_VERSIONS:  # type: ignore[arg-type]
+        if len(version) == 4 and int.from_bytes(version, order) in _SAC_VERSIONS:
             return "a binary SAC file, which does not state its unit; export the record as text"
     if data.startswith((b"\x89HDF", b"CDF\x01", b"CDF\x02")):
         return "an HDF5 or NetCDF file; export the record as text"
@@ -45,7 +47,7 @@ def not_a_record(record: RecordFile) -> str | None:
             "holds response and Fourier spectra (CSMIP/CESMD Volume 3), no accelerogram; use the "
             "corrected record (Volume 2, .V2)"
         )
-    if first.startswith("<?xml") or first.startswith("<"):
+    if first.startswith("<"):
         kind = "StationXML" if any("StationXML" in line for line in record.lines[:5]) else "XML"
         return f"is {kind}, no record; name the record's own file"
     if first.startswith("{"):

@@ -59,7 +59,7 @@ def is_renadic(record: RecordFile) -> bool:
 
 def renadic_channels(record: RecordFile, options: Options) -> list[Channel]:
     """All components of the file."""
-    channels = []
+    channels: list[Channel] = []
     for start, line in enumerate(record.lines):
         if _FIRST.match(line):
             text = record.lines[start : start + HEADER_LINES]
