@@ -19,11 +19,12 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
+    check_not_cut,
     cut_token,
     free_numbers,
+    last_tokens,
     no_marks,
     shown,
-    to_float,
     unit_of_file,
 )
 
@@ -74,7 +75,7 @@ def read_at2(record: RecordFile, options: Options) -> Series:
     body = record if stop == len(record.lines) else replace(record, lines=record.lines[:stop])
     if values.size != npts:
         raise record.fault(_wrong_count(body, npts, int(values.size)))
-    _check_last(body)
+    check_not_cut(body, last_tokens(body, index + 1))
     no_marks(record, values)
     header = "; ".join(line.strip() for line in record.lines[:index] if line.strip())
     notes = (f"header: {header[:200]}",) if header else ()
@@ -151,19 +152,3 @@ def _wrong_count(record: RecordFile, npts: int, found: int) -> str:
     if cut_token(record) is not None:
         message += f", the last of them cut off (line {len(record.lines)})"
     return message + "; the file is cut off or its header wrong: fetch it again"
-
-
-def _check_last(record: RecordFile) -> None:
-    """A file of the right count may still end inside its last number.
-
-    A zero on a line of its own is none: it was appended to see free vibration.
-    """
-    last = record.lines[-1].split()
-    if len(last) == 1 and to_float(last[0]) == 0.0:
-        return
-    cut = cut_token(record)
-    if cut is not None:
-        raise record.fault(
-            f"the last value, {shown(cut)}, is cut off; fetch the file again",
-            len(record.lines) - 1,
-        )

@@ -30,6 +30,7 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
+    check_not_cut,
     convert,
     no_marks,
     shown,
@@ -130,7 +131,7 @@ def _read(
     column: int,
 ) -> Series:
     """Read one column of numbers and the time beside it."""
-    table, rows, first_column = _table(record, start, len(heads.names))
+    table, rows, first_column, last_column = _table(record, start, len(heads.names))
     if len(table) < 2:
         raise record.fault("has a single row of numbers; a record needs at least two", start)
     factor, notes = _factor(record, options, start, heads, column)
@@ -142,6 +143,7 @@ def _read(
             "wrong: fetch it again",
             count[1],
         )
+    check_not_cut(record, last_column)
     no_marks(record, table[:, column])
     step = stated_step(head)
     if not timed:
@@ -222,8 +224,8 @@ def _split(line: str, separator: str | None) -> list[str]:
 
 def _table(
     record: RecordFile, start: int, count: int
-) -> tuple[NDArray[np.float64], list[int], list[str]]:
-    """All rows: the numbers (rows, count), the line of each row, and the first column as text."""
+) -> tuple[NDArray[np.float64], list[int], list[str], list[str]]:
+    """All rows: the numbers (rows, count), the line of each, first and last column as text."""
     separator = _separator(record.lines[start])
     block = record.lines[start:]
     quoted = any('"' in line for line in block)
@@ -238,7 +240,7 @@ def _table(
     else:
         tokens, rows = _ragged(record, start, count, separator)
     values = convert(record, tokens, _LineOfRow(rows, count))
-    return values.reshape(len(rows), count), rows, tokens[::count]
+    return values.reshape(len(rows), count), rows, tokens[::count], tokens[count - 1 :: count]
 
 
 def _ragged(

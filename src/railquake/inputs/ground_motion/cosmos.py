@@ -205,7 +205,8 @@ def _values(
 ) -> tuple[NDArray[np.float64], list[int]]:
     """The values from a line on, and the line of each."""
     # One value a line is written in fields of any width, whatever the format says.
-    if all(len(line.split()) == 1 for line in record.lines[first : first + min(count, 3)]):
+    head = record.lines[first : first + min(count, 3)]
+    if head and all(len(line.split()) == 1 for line in head):
         block = record.lines[first : first + count]
         end = next((i for i, line in enumerate(block) if _END.match(line)), len(block))
         single = all(len(line.split()) == 1 for line in block[:end])

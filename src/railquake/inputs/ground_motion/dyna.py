@@ -18,9 +18,10 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
-    cut_token,
+    check_not_cut,
     free_numbers,
     key_values,
+    last_tokens,
     no_marks,
     peak_note,
     shown,
@@ -75,8 +76,7 @@ def read_dyna(record: RecordFile, options: Options) -> Series:
             f"NDATA is {count} and the file has {values.size} values; it is cut off or its header "
             "wrong: fetch it again"
         )
-    if cut_token(record) is not None:
-        raise record.fault("the last value is cut off; fetch the file again", len(record.lines) - 1)
+    check_not_cut(record, last_tokens(record, start))
     no_marks(record, values)
     notes: tuple[str, ...] = ()
     if header.get("baseline_correction", "").upper() == "BASELINE NOT REMOVED":

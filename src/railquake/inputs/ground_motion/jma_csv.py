@@ -17,6 +17,7 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
+    check_not_cut,
     convert,
     no_marks,
     unit_of_file,
@@ -73,17 +74,22 @@ def _read(record: RecordFile, options: Options, index: int, number: int, width: 
         raise record.fault("the header's SAMPLING RATE cannot be read; '100Hz' is an example")
     dt = check_dt(record, 1.0 / float(rate.group(1)), options)
     factor = unit_of_file(record, unit.group(1) if unit else None, options)
-    tokens = []
+    tokens: list[str] = []
+    ends: list[str] = []
+    commas = record.line(index + 1).count(",")
     for place, line in enumerate(record.lines[index + 1 :], index + 1):
         cells = _cells(line)
-        if len(cells) != width:
+        if len(cells) != width or line.count(",") != commas:
             raise record.fault(
-                f"has {len(cells)} values, {width} are named above; the file is damaged or cut off",
+                f"has {len(cells)} values and {line.count(',')} commas, not {width} and {commas}; "
+                "the file is damaged or cut off",
                 place,
             )
         tokens.append(cells[number - 1])
+        ends.append(cells[-1])
     if len(tokens) < 2:
         raise record.fault("holds fewer than two rows of values")
     values = convert(record, tokens, range(index + 1, len(record.lines)))
+    check_not_cut(record, ends)
     no_marks(record, values)
     return Series(dt, values * factor)

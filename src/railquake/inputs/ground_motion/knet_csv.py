@@ -21,6 +21,7 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
+    check_not_cut,
     convert,
     no_marks,
     peak_note,
@@ -84,6 +85,7 @@ def _read(record: RecordFile, options: Options, number: int) -> Series:
     factor = unit_of_file(record, names[number - 1][1], options)
     start, width = len(header), len(names) + 1
     stamps: list[str] = []
+    ends: list[str] = []
     tokens: list[str] = []
     for index, line in enumerate(record.lines[start:], start):
         cells = [cell.strip() for cell in line.split(",")]
@@ -96,9 +98,11 @@ def _read(record: RecordFile, options: Options, number: int) -> Series:
             )
         stamps.append(cells[0])
         tokens.append(cells[number])
+        ends.append(cells[-1])
     if len(tokens) < 2:
         raise record.fault("holds fewer than two rows of values")
     values = convert(record, tokens, range(start, len(record.lines)))
+    check_not_cut(record, ends)
     dt = check_dt(record, _time_step(record, entries, _seconds(record, stamps, start)), options)
     length = re.match(NUMBER, entries.get("duration time(s)", entries.get("duration time", "")))
     if length and abs(float(length.group(0)) - len(values) * dt) > 0.5 * dt:

@@ -14,8 +14,9 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
-    cut_token,
+    check_not_cut,
     free_numbers,
+    last_tokens,
     no_marks,
     to_float,
     unit_of_file,
@@ -69,10 +70,7 @@ def read_listed(record: RecordFile, options: Options) -> Series:
             f"line {index + 1} announces {count} values at steps of {dt:g} s, and {values.size} "
             "follow; the file is cut off, or that line means something else"
         )
-    last = record.lines[-1].split()
-    appended = len(last) == 1 and to_float(last[0]) == 0.0
-    if cut_token(record) is not None and not appended:
-        raise record.fault("the last value is cut off; fetch the file again", len(record.lines) - 1)
+    check_not_cut(record, last_tokens(record, index + 1))
     factor = unit_of_file(record, stated[0] if stated else None, options)
     no_marks(record, values)
     note = f"'{match.group(0).strip()}' in line {index + 1} taken for number and step of the values"

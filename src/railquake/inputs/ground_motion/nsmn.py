@@ -19,9 +19,10 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
-    cut_token,
+    check_not_cut,
     free_numbers,
     key_values,
+    last_tokens,
     no_marks,
     peak_note,
     shown,
@@ -91,8 +92,7 @@ def _read(record: RecordFile, options: Options, index: int, number: int, name: s
             f"NUMBER OF DATA is {count} and the file has {len(table)} rows; it is cut off or its "
             "header wrong: fetch it again"
         )
-    if cut_token(record) is not None:
-        raise record.fault("the last value is cut off; fetch the file again", len(record.lines) - 1)
+    check_not_cut(record, last_tokens(record, start))
     values = table[:, number - 1]
     no_marks(record, values)
     peaks = {key.upper(): to_float(text) for key, text in _PEAKS.findall(header.get(stated, ""))}

@@ -362,3 +362,43 @@ def cut_token(record: RecordFile) -> str | None:
         return None
     short = last is None or last[0] < usual[0] or last[1] < usual[1]
     return tokens[-1] if short else None
+
+
+FEWEST_ALIKE, MOST_ALIKE = 20, 2000
+"""So many numbers of as many decimals show that trailing zeros are not dropped."""
+
+
+def cut_decimal(tokens: Sequence[str]) -> str | None:
+    """The last number if it has fewer decimals than all before it, which have equally many."""
+    shapes = [_SHAPE.match(token) for token in tokens[-MOST_ALIKE:]]
+    if len(shapes) <= FEWEST_ALIKE or any(shape is None for shape in shapes[:-1]):
+        return None
+    usual = {(len(shape.group(1)), shape.group(2)) for shape in shapes[:-1] if shape}
+    (decimals, power), *others = usual
+    if others or power is not None or decimals == 0:
+        return None
+    last = shapes[-1]
+    short = last is None or (last.group(2) is None and len(last.group(1)) < decimals)
+    return tokens[-1] if short else None
+
+
+def check_not_cut(record: RecordFile, tokens: Sequence[str]) -> None:
+    """Refuse a last number that has fewer digits than those before it.
+
+    A zero on a line of its own is a whole one: it was appended to see free vibration.
+    """
+    last = record.lines[-1].split()
+    if len(last) == 1 and to_float(last[0]) == 0.0:
+        return
+    cut = cut_token(record) or cut_decimal(tokens)
+    if cut is not None:
+        raise record.fault(
+            f"the last value, {shown(cut)}, is cut off; fetch the file again",
+            len(record.lines) - 1,
+        )
+
+
+def last_tokens(record: RecordFile, start: int) -> list[str]:
+    """The numbers of the last lines from line `start` on, as text."""
+    first = max(start, len(record.lines) - MOST_ALIKE)
+    return [token for line in record.lines[first:] for token in line.split()]
