@@ -100,6 +100,41 @@ def test_lists_of_values_are_called_so_and_not_damaged(tmp_path: Path, per_line:
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        " ".join(f"{value:.5e}" for value in VALUES),
+        "\n".join(" ".join(f"{v:.5e}" for v in VALUES[at : at + 3]) for at in range(0, 59, 3))
+        + f"\n{VALUES[-1]:.5e}",
+    ],
+)
+def test_one_line_and_a_shorter_last_one_are_lists_too(tmp_path: Path, text: str) -> None:
+    with pytest.raises(InputError, match="a list of values, it seems"):
+        read(tmp_path, text, units="g", dt=0.01)
+
+
+@pytest.mark.parametrize("name", ["vel_cm_s", "velocity", "disp", "displacement (g)"])
+def test_a_column_of_another_motion_is_not_read_as_acceleration(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match="holds no acceleration"):
+        read(tmp_path, f"t_s,{name}\n{ROWS}", units="g")
+
+
+def test_a_number_of_values_alone_is_no_value(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="first value, 60, is the number of those that follow"):
+        read(tmp_path, f"60\n{ALONE}", units="gal", dt=0.01)
+
+
+def test_text_behind_the_values_of_at2_is_called_so(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="the text 'Processed by nobody' stands behind the 60"):
+        read(tmp_path, f"{AT2}NPTS= 60, DT= .0100 SEC\n{ALONE}Processed by nobody\n")
+
+
+def test_a_step_and_a_number_before_the_values_are_read(tmp_path: Path) -> None:
+    values, dt, _ = read(tmp_path, f"0.0100 60\n{ALONE}", units="m/s2")
+    np.testing.assert_allclose(values, VALUES, rtol=1e-9)
+    assert dt == 0.01
+
+
+@pytest.mark.parametrize(
     ("head", "step"),
     [
         ("dt = 0.01\n", 0.01),

@@ -71,6 +71,7 @@ def read_at2(record: RecordFile, options: Options) -> Series:
     npts, dt = _npts_and_dt(record, index, options)
     factor = _factor(record, index, options)
     stop = _end_of_values(record, index + 1)
+    _no_text_behind(record, index + 1, stop, npts)
     values = free_numbers(record, index + 1, stop)
     body = record if stop == len(record.lines) else replace(record, lines=record.lines[:stop])
     if values.size != npts:
@@ -88,6 +89,16 @@ def _end_of_values(record: RecordFile, start: int) -> int:
     while stop > start and _END.match(record.lines[stop - 1]):
         stop -= 1
     return stop
+
+
+def _no_text_behind(record: RecordFile, start: int, stop: int, npts: int) -> None:
+    """Refuse words behind all the values as what they are, not as damaged numbers."""
+    first = stop
+    while first > start and re.search(r"[A-Za-z]{3}", record.lines[first - 1]):
+        first -= 1
+    if first < stop and sum(len(line.split()) for line in record.lines[start:first]) == npts:
+        text = shown(record.lines[first].strip())
+        raise record.fault(f"the text {text} stands behind the {npts} values; remove it", first)
 
 
 def _header_line(record: RecordFile) -> int | None:

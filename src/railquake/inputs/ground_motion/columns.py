@@ -48,6 +48,7 @@ TIME_INCREASES = 0.8
 """Share of the steps that increase in a column of time, damaged ones included."""
 
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)|\*+", re.IGNORECASE)
+_OTHER_MOTION = re.compile(r"vel(?:oc\w*)?\b|vel_|disp\w*\b|disp_|speed\b", re.IGNORECASE)
 _DECIMAL = re.compile(r"[+-]?[0-9]*\.?([0-9]*)(?:[eEdD]([+-]?[0-9]{1,4}))?")
 
 
@@ -103,6 +104,9 @@ def _has_time(
     """
     if heads.time is not None:
         return heads.time
+    unnamed = not any(heads.names)
+    rest = len(_split(record.lines[-1], separator))
+    wrapped = count >= COMPONENTS and unnamed and (rest < count or start + 1 == len(record.lines))
     column = [
         to_float(fields[0])
         for line in record.lines[start : start + MOST_LOOKED_AT]
@@ -110,10 +114,12 @@ def _has_time(
     ]
     numbers = [number for number in column if number is not None]
     steps = np.diff(np.array(numbers))
-    if steps.size < FEWEST_STEPS or np.mean(steps > 0.0) >= TIME_INCREASES:
-        return True
-    if count == COMPONENTS or any(heads.names):
-        return False
+    increases = steps.size > 0 and float(np.mean(steps > 0.0)) >= TIME_INCREASES
+    if not (wrapped and not increases):
+        if steps.size < FEWEST_STEPS or increases:
+            return True
+        if count == COMPONENTS or not unnamed:
+            return False
     raise record.fault(
         f"has rows of {count} numbers under no names, and the first of them is no time, as it does "
         "not increase: a list of values, it seems; write one value on each line and give units "
@@ -134,6 +140,16 @@ def _read(
     table, rows, first_column, last_column = _table(record, start, len(heads.names))
     if len(table) < 2:
         raise record.fault("has a single row of numbers; a record needs at least two", start)
+    if _OTHER_MOTION.match(heads.names[column]):
+        raise record.fault(
+            f"the column {shown(heads.names[column])} holds no acceleration; choose another", start
+        )
+    if len(heads.names) == 1 and first_column[0] == str(len(table) - 1):
+        raise record.fault(
+            f"its first value, {first_column[0]}, is the number of those that follow; remove it, "
+            f"or write '{first_column[0]} DT' there",
+            start,
+        )
     factor, notes = _factor(record, options, start, heads, column)
     head = record.lines[:start]
     count = stated_count(head)

@@ -1,6 +1,7 @@
 """A line "NPTS DT" and the values in any layout: the text of eqsig and of OpenSees' examples.
 
-"400 0.0100" stands alone on the first line of numbers; names and remarks may stand above it.
+"400 0.0100", or "0.0100 400", stands alone on the first line of numbers; names and
+remarks may stand above it.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ HEADER_LINES = 20
 LONGEST_STEP = 0.5
 """A larger second number is no time step of a record, s."""
 
-_HEAD = re.compile(r"^\s*([0-9]{1,9})[\s,]+([0-9]*\.[0-9]+(?:[eE][+-]?[0-9]+)?)\s*(?:s|sec)?\s*$")
+_STEP = r"([0-9]*\.[0-9]+(?:[eE][+-]?[0-9]+)?)"
+_HEAD = re.compile(rf"^\s*([0-9]{{1,9}})[\s,]+{_STEP}\s*$")
+_TURNED = re.compile(rf"^\s*{_STEP}[\s,]+([0-9]{{1,9}})\s*$")
 
 
 def is_listed(record: RecordFile) -> bool:
@@ -40,7 +43,7 @@ def is_listed(record: RecordFile) -> bool:
     # is that of all values.
     if below and all(len(row) == 2 for row in below):
         tokens = sum(len(line.split()) for line in record.lines[index + 1 :])
-        return tokens == int(record.lines[index].replace(",", " ").split()[0])
+        return tokens == int(_count_and_step(record.lines[index])[0])
     return bool(below)
 
 
@@ -59,10 +62,9 @@ def read_listed(record: RecordFile, options: Options) -> Series:
     """
     index = _head_line(record)
     assert index is not None, "is_listed comes first"
-    match = _HEAD.match(record.lines[index])
-    assert match is not None
-    count = whole_number(record, match.group(1), "number of values", index)
-    dt = check_dt(record, to_float(match.group(2)) or 0.0, options, index)
+    number, step = _count_and_step(record.lines[index])
+    count = whole_number(record, number, "number of values", index)
+    dt = check_dt(record, to_float(step) or 0.0, options, index)
     stated = unit_table.unit_statements(record.lines[:index])
     values = free_numbers(record, index + 1)
     if values.size != count:
@@ -73,7 +75,8 @@ def read_listed(record: RecordFile, options: Options) -> Series:
     check_not_cut(record, last_tokens(record, index + 1))
     factor = unit_of_file(record, stated[0] if stated else None, options)
     no_marks(record, values)
-    note = f"'{match.group(0).strip()}' in line {index + 1} taken for number and step of the values"
+    head = record.lines[index].strip()
+    note = f"'{head}' in line {index + 1} taken for number and step of the values"
     return Series(dt, values * factor, (note,))
 
 
@@ -81,8 +84,16 @@ def _head_line(record: RecordFile) -> int | None:
     for index, line in enumerate(record.lines[:HEADER_LINES]):
         fields = line.replace(",", " ").split()
         if fields and all(to_float(field) is not None for field in fields):
-            match = _HEAD.match(line)
-            if match is None or not 0.0 < (to_float(match.group(2)) or 0.0) <= LONGEST_STEP:
-                return None
-            return index if int(match.group(1)) >= 2 else None
+            number, step = _count_and_step(line)
+            right = number and int(number) >= 2 and 0.0 < (to_float(step) or 0.0) <= LONGEST_STEP
+            return index if right else None
     return None
+
+
+def _count_and_step(line: str) -> tuple[str, str]:
+    """The two as written, in this order; empty where the line is another."""
+    match = _HEAD.match(line)
+    if match:
+        return match.group(1), match.group(2)
+    match = _TURNED.match(line)
+    return (match.group(2), match.group(1)) if match else ("", "")
