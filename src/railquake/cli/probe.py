@@ -122,7 +122,7 @@ def probe_motion(
     motion = motion.scaled(abs(scale))
     if scale < 0.0:
         motion = motion.mirrored()
-    warnings = list(motion.baseline_check())
+    warnings = [*motion.doubts(), *motion.baseline_check()]
     if picture is not None:
         from railquake.plots import write_motion_picture
 

@@ -151,10 +151,11 @@ def check(case: Case, changes: Changes = None, as_json: Json = False) -> None:
 
     scenario = load_scenario(case, changes or ())
     system = assemble(scenario)
-    warnings = list(system.ground.baseline_check())
+    warnings = [*system.ground.doubts(), *system.ground.baseline_check()]
     vertical = scenario.vertical_motion()
     if vertical is not None:
-        warnings += [f"vertical: {text}" for text in vertical.baseline_check()]
+        found = (*vertical.doubts(), *vertical.baseline_check())
+        warnings += [f"vertical: {text}" for text in found]
     support = scenario.support
     facts = {
         "ok": True,

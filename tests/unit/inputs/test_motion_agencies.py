@@ -146,6 +146,22 @@ def test_a_peak_that_the_data_do_not_have_is_told(
 
 
 @pytest.mark.parametrize(
+    ("text", "begin"),
+    [
+        (cosmos(flag=2), "the agency flags"),
+        (dyna(**{"PGA_CM/S^2": "1.0"}), "the header gives a peak"),
+        ("t_s,a_g\n0,0.1\n0.01,0.2\n0.02,0.1\n", "unit g taken"),
+        (dyna(), None),
+    ],
+)
+def test_doubts_about_a_record_are_told_apart_from_its_notes(
+    tmp_path: Path, text: str, begin: str | None
+) -> None:
+    doubts = read_motion(write(tmp_path, text)).scaled(0.5).doubts()
+    assert not doubts if begin is None else (len(doubts) == 1 and doubts[0].startswith(begin))
+
+
+@pytest.mark.parametrize(
     ("text", "channel", "message"),
     [
         (dyna(NDATA="41"), None, "NDATA is 41 and the file has 40"),
