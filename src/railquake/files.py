@@ -1,4 +1,7 @@
-"""Writing files and folders: whole or not at all, and known to be possible before a long run.
+"""Reading named files; writing files and folders whole or not at all, known to be possible.
+
+What is read is a regular file of a sensible size, whatever was named: a folder, a device and a
+pipe, which may have no end or wait for ever, are refused before a byte is asked of them.
 
 What is written lies under a hidden, random name that ends with ``.part`` until its writer is done,
 and is then moved into its place: whoever reads sees the former state or the new one, and an
@@ -7,10 +10,12 @@ interruption leaves nothing behind.
 
 from __future__ import annotations
 
+import errno
 import os
 import secrets
 import shutil
 import signal
+import stat
 import tempfile
 import threading
 from collections.abc import Collection, Iterator
@@ -23,11 +28,54 @@ from railquake.messages import reason
 __all__ = [
     "prepare_folder",
     "random_name",
+    "read_file",
     "set_aside",
     "uninterrupted",
     "whole_file",
     "whole_folder",
 ]
+
+
+LARGEST_FILE = 256 * 2**20
+"""Bytes; no input that a person names is larger."""
+
+
+def read_file(path: str | os.PathLike[str], largest: int = LARGEST_FILE) -> bytes:
+    """All of a regular file.
+
+    Parameters
+    ----------
+    path : str or Path
+        As somebody named it.
+    largest : int
+        More bytes than these are not read.
+
+    Raises
+    ------
+    OSError
+        Whatever is wrong, with words for the one who named it: also a folder, a device, a pipe, a
+        file that is too large, and a name that no file can have.
+    """
+    # a pipe without a writer would make open() wait: it does not with this flag
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    try:
+        number = os.open(path, flags)
+    except ValueError:  # a null character, or one that the system's encoding lacks
+        raise OSError(errno.EINVAL, "no file can have this name") from None
+    except OSError as error:
+        if error.errno == errno.ENXIO:  # a socket
+            raise OSError(errno.EINVAL, "it is no regular file") from None
+        raise
+    with open(number, "rb") as file:
+        found = os.fstat(number)
+        if stat.S_ISDIR(found.st_mode):
+            raise OSError(errno.EISDIR, "it is a folder; name a file in it")
+        if not stat.S_ISREG(found.st_mode):
+            raise OSError(errno.EINVAL, "it is no regular file")
+        data = file.read(largest + 1)
+    if len(data) > largest:
+        raise OSError(errno.EFBIG, f"it is over {largest / 2**20:.3g} MiB, too large to be meant")
+    return data
 
 
 def prepare_folder(folder: Path) -> None:

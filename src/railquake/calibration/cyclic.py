@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
 from dataclasses import dataclass
@@ -13,8 +14,9 @@ from typing import Any, Literal
 import numpy as np
 
 from railquake.errors import InputError
-from railquake.inputs.units import to_si
-from railquake.messages import did_you_mean
+from railquake.files import read_file
+from railquake.inputs.units import number_of, to_si
+from railquake.messages import did_you_mean, unreadable
 
 __all__ = ["Kind", "Loop", "check_loop", "read_loop", "resampled"]
 
@@ -136,12 +138,11 @@ def read_loop(
         row = []
         for index, factor in found:
             cell = cells[index].strip() if index < len(cells) else ""
-            try:
-                value = float(cell)
-            except ValueError:
+            value = number_of(cell)
+            if value is None:
                 raise InputError(
                     f'{path}, line {number}: {names[index]}: "{cell[:40]}" is no number'
-                ) from None
+                )
             if not math.isfinite(value):
                 raise InputError(
                     f"{path}, line {number}: {names[index]}: must be a finite number, found {cell}"
@@ -322,14 +323,14 @@ def _first_slope(rotation: Array, moment: Array) -> float:
 
 def _lines(path: str | Path) -> list[tuple[int, list[str]]]:
     try:
-        with Path(path).open(encoding="utf-8-sig", newline="") as file:
-            lines = [
-                (number, [cell.strip() for cell in row])
-                for number, row in enumerate(csv.reader(file), start=1)
-                if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
-            ]
+        text = read_file(path).decode("utf-8-sig")
+        lines = [
+            (number, [cell.strip() for cell in row])
+            for number, row in enumerate(csv.reader(io.StringIO(text, newline="")), start=1)
+            if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
+        ]
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+        raise unreadable(path, error) from None
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: is not a CSV text file: {error}") from None
     if not lines:

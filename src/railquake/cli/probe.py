@@ -275,6 +275,8 @@ def probe_contact(
     }
     pair = WheelRail.from_preset(preset, overrides)
     standing = standing_wheelset(pair, shift, load)
+    for doubt in pair.doubts():
+        typer.echo(f"railquake: warning: {doubt}", err=True)
     if picture is not None:
         from railquake.plots.contact import write_contact_picture
 

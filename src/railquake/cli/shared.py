@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.errors import InputError
-from railquake.files import whole_file
+from railquake.files import read_file, whole_file
 from railquake.messages import reason, unreadable
 
 if TYPE_CHECKING:
@@ -101,8 +101,10 @@ def read_column(path: Path, name: str) -> Any:
     """One column of a CSV file, by name, or the first where there is no header."""
     import numpy as np
 
+    from railquake.inputs.units import number_of
+
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        lines = read_file(path).decode("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise unreadable(path, error) from None
     column, values = 0, []
@@ -111,27 +113,20 @@ def read_column(path: Path, name: str) -> Any:
         cells = [cell.strip() for cell in line.split(",")]
         if not line.strip() or line.startswith("#"):
             continue
-        if not started and not _is_number(cells[0]):
+        if not started and number_of(cells[0]) is None:
             if name not in cells:
                 raise InputError(f'{path}, line {number}: no column "{name}" among {line!r}')
             column, started = cells.index(name), True
             continue
         started = True
         text = cells[column] if column < len(cells) else ""
-        if not _is_number(text) or not np.isfinite(float(text)):
-            raise InputError(f'{path}, line {number}: "{text}" is no finite number')
-        values.append(float(text))
+        value = number_of(text)
+        if value is None or not np.isfinite(value):
+            raise InputError(f'{path}, line {number}: "{text[:40]}" is no finite number')
+        values.append(value)
     if not values:
         raise InputError(f"{path}: holds no rows; write a column {name}, one value a line")
     return np.array(values)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def write_file(path: Path, write: Callable[[Path], Any]) -> None:

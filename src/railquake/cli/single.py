@@ -152,6 +152,7 @@ def check(case: Case, changes: Changes = None, as_json: Json = False) -> None:
     scenario = load_scenario(case, changes or ())
     system = assemble(scenario)
     warnings = list(system.ground.baseline_check())
+    warnings += scenario.wheelrail.doubts()
     vertical = scenario.vertical_motion()
     if vertical is not None:
         warnings += [f"vertical: {text}" for text in vertical.baseline_check()]

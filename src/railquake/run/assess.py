@@ -198,7 +198,9 @@ _WORKED_OUT: Mapping[str, Callable[[Response], Any]] = {
     "time_step_error": _time_step_error,
     "track_intensity": _track_intensity,
     "uplift_ratio": _uplift_ratio,
-    "warnings": lambda response: "; ".join(doubts(response)) or None,
+    "warnings": lambda response: (
+        "; ".join((*doubts(response), *response.system.scenario.wheelrail.doubts())) or None
+    ),
     "versions": lambda _: versions(),
     "wheel_unloading": _wheel_unloading,
     "stop_use": _stop_use,
