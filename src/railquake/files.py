@@ -26,6 +26,7 @@ from railquake.errors import InputError
 from railquake.messages import reason
 
 __all__ = [
+    "is_file",
     "prepare_folder",
     "random_name",
     "read_file",
@@ -34,6 +35,14 @@ __all__ = [
     "whole_file",
     "whole_folder",
 ]
+
+
+def is_file(path: str | os.PathLike[str]) -> bool:
+    """Whether there is such a file; False for a name that no file can have."""
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):
+        return False
 
 
 LARGEST_FILE = 256 * 2**20

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -15,6 +16,7 @@ __all__ = [
     "on_one_line",
     "reason",
     "refuse_unknown",
+    "shell_word",
     "shown",
     "toml_type",
     "unreadable",
@@ -103,6 +105,12 @@ def refuse_unknown(keys: Iterable[object], known: Sequence[str], before: str) ->
     for key in keys:
         if key not in known:
             raise InputError(f"{before}{key}: unknown key; {did_you_mean(key, known)}")
+
+
+def shell_word(path: str | Path) -> str:
+    """A path as it is typed in a command: quoted, and no option though it begins with a dash."""
+    text = str(path)
+    return shlex.quote(f"./{text}" if text.startswith("-") else text)
 
 
 def shown(value: object) -> str:

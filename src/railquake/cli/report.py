@@ -27,6 +27,10 @@ def report(
             "--hazard", help="Uniform hazard spectra to draw the suite against: a name or a CSV."
         ),
     ] = None,
+    records: Annotated[
+        Path | None,
+        typer.Option("--records", help="Folder of the records, if they were moved since."),
+    ] = None,
 ) -> None:
     """Write the report of a study: one HTML page that needs nothing else.
 
@@ -35,15 +39,20 @@ def report(
 
     Example: railquake report study
     """
-    report_with_notes(folder, out, hazard)
+    report_with_notes(folder, out, hazard, records)
 
 
-def report_with_notes(folder: Path, out: Path | None = None, hazard: str | None = None) -> None:
+def report_with_notes(
+    folder: Path,
+    out: Path | None = None,
+    hazard: str | None = None,
+    records: Path | None = None,
+) -> None:
     """Write a report, and say on standard error what takes long."""
     from railquake.report import write_report
 
     def say(text: str) -> None:
         typer.echo(f"railquake: {text}", err=True)
 
-    page = write_report(folder, out, hazard=hazard, notify=say)
+    page = write_report(folder, out, hazard=hazard, records=records, notify=say)
     typer.echo(f"report                   {page.resolve()}")

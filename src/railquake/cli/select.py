@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,7 +12,7 @@ import typer
 from railquake.cli.application import app
 from railquake.cli.shared import Json, print_json, progress_bar, write_file, write_text
 from railquake.errors import InputError
-from railquake.messages import reason
+from railquake.messages import reason, shell_word
 
 if TYPE_CHECKING:
     from railquake.suite import Selection
@@ -138,4 +139,7 @@ def _print(chosen: Selection, manifest: Path, picture: Path, records: Path) -> N
     ):
         typer.echo(f"{label:24} {text}")
     typer.echo(f"{manifest}, {picture}")
-    typer.echo(f'in a study: [suite] manifest = "{manifest}", run with --records {records}')
+    typer.echo(
+        f"in a study: [suite] manifest = {json.dumps(str(manifest), ensure_ascii=False)}, "
+        f"run with --records {shell_word(records)}"
+    )

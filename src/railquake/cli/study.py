@@ -189,6 +189,10 @@ def rerun(
         int, typer.Argument(metavar="ROW", help="Number of the row, from 0.", show_default=False)
     ],
     out: Out,
+    records: Annotated[
+        Path | None,
+        typer.Option("--records", help="Folder of the records, if they were moved since."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Run one row of a study again, as `railquake run` does.
@@ -200,4 +204,4 @@ def rerun(
     from railquake.cli.single import run_scenario
     from railquake.study import open_results
 
-    run_scenario(open_results(folder).scenario(row), out, as_json)
+    run_scenario(open_results(folder, records=records).scenario(row), out, as_json)

@@ -19,6 +19,7 @@ from railquake.inputs.toml import is_path, read_toml
 from railquake.messages import did_you_mean, refuse_unknown, shown, toml_type
 from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
+from railquake.study.moved import FOLDER
 from railquake.study.parsing import parse_axes, parse_sampling
 from railquake.suite import SUITES, Suite, SuiteMember, load_suite
 
@@ -94,7 +95,7 @@ class StudyInputs:
         InputError
             Naming the field, what was found and what to write.
         """
-        refuse_unknown((key for key in tables if key != "railquake"), _SECTIONS, f"{where}: ")
+        refuse_unknown((key for key in tables if key not in ("railquake", FOLDER)), _SECTIONS, f"{where}: ")
         if "base" not in tables:
             raise InputError(
                 f'{where}: base: missing; write e.g. [base] case = "case.toml", or the tables of a '

@@ -14,6 +14,7 @@ from railquake.files import prepare_folder, random_name, set_aside, whole_file
 from railquake.inputs.toml import dumps, read_toml
 from railquake.messages import reason, shown
 from railquake.run.time_step import TimeStep
+from railquake.study.moved import FOLDER, without_folders
 from railquake.study.table import distinct, in_columns
 
 if TYPE_CHECKING:
@@ -74,7 +75,9 @@ class ResultsFolder:
 
         prepare_folder(self.path)
         file = self.path / STUDY_FILE
-        tables = {"railquake": __version__, **study.to_dict()}
+        tables = {
+            "railquake": __version__, FOLDER: str(self.path.absolute()), **study.to_dict()
+        }  # fmt: skip
         if file.exists():
             self.compare(tables, notify)
         elif self.path.exists() and any(
@@ -103,6 +106,8 @@ class ResultsFolder:
         """
         file = self.path / STUDY_FILE
         old, new = dict(read_toml(file)), dict(tables)
+        for read in (old, new):
+            read.pop(FOLDER, None)
         made_by = old.pop("railquake", None)
         version = new.pop("railquake", None)
         # written and read once, so that both have the same form
@@ -289,7 +294,9 @@ def _flat(value: Any, path: str = "") -> dict[str, Any]:
 def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
     """What differs between two studies, a phrase each."""
     a, b = _flat(old), _flat(new)
-    a, b = ({k: v for k, v in x.items() if not k.endswith(".name")} for x in (a, b))
+    a, b = (
+        {k: without_folders(k, v) for k, v in x.items() if not k.endswith(".name")} for x in (a, b)
+    )
     found = []
     for key in dict.fromkeys((*a, *b)):
         if key not in b:
@@ -304,4 +311,13 @@ def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
 
 
 def _as_listed(tables: Mapping[str, Any]) -> str:
-    return json.dumps({key: value for key, value in tables.items() if key != "base"})
+    return json.dumps(_named({key: value for key, value in tables.items() if key != "base"}))
+
+
+def _named(value: Any, path: str = "") -> Any:
+    """The same with names of files for their paths."""
+    if isinstance(value, Mapping):
+        return {key: _named(item, key) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_named(item, path) for item in value]
+    return without_folders(path, value)
