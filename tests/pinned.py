@@ -284,6 +284,7 @@ SIDEWAYS = [0.0, 500.0, 900.0, 900.0, 400.0, -600.0, -200.0]  # m/s2, each milli
 UPWARDS = [0.0, 20.0, -60.0, -60.0, 30.0, 50.0, 0.0]
 JOLT = {
     "motion": rq.GroundMotion("jolt", 1e-3, SIDEWAYS),
+    "allow_high_pga": True,
     "vertical": rq.GroundMotion("jolt", 1e-3, UPWARDS),
     "dt": "2e-5 s",
     "history_step": "1e-4 s",
@@ -292,6 +293,7 @@ BLOW = {
     "motion": rq.GroundMotion(
         "blow", 2e-3, [0.0, 300.0, 300.0, 200.0, 0.0, -200.0, -200.0, *4 * [0.0]]
     ),
+    "allow_high_pga": True,
     "dt": "2e-5 s",
 }
 PUSH = {

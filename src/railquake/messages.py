@@ -115,6 +115,8 @@ def shell_word(path: str | Path) -> str:
 
 def shown(value: object) -> str:
     """Show a value in a message: in one short line, whatever it is."""
+    if type(value).__module__ == "numpy" and hasattr(value, "item") and not getattr(value, "ndim", 1):
+        value = value.item()
     if isinstance(value, str):
         return '"' + " ".join(value[:60].split()) + '"'
     if isinstance(value, int) and abs(value) >= 10**60:

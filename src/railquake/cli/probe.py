@@ -207,10 +207,11 @@ def _shake_car(
     import numpy as np
 
     from railquake.inputs.ground_motion import read_motion
+    from railquake.inputs.motion import scaled_motion
     from railquake.probe import shake_held
 
-    ground = read_motion(record, allow_high_pga=high)
-    lateral = scale * ground.acceleration
+    ground = scaled_motion(read_motion(record, allow_high_pga=high), scale, high)
+    lateral = ground.acceleration
     found = shake_held(car, ground.time, lateral, np.zeros(len(lateral)))
     moved = found.displacements.reshape(len(found.times), -1)
     columns = _columns(found.bodies)
