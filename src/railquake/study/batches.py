@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from railquake.errors import InputError
 from railquake.memory import Bounded
 from railquake.run.many import failed_row, run_here
 from railquake.study.design import Design
@@ -72,7 +71,7 @@ def run_batch(batch: Batch, stop: threading.Event | None = None) -> Ended:
                 return
             try:
                 yield row, design.scenario(design.point(row))
-            except InputError as error:
+            except Exception as error:  # the others shall not suffer
                 done.append((row, failed_row(error)))
 
     for ended in run_here(scenarios(), stop):

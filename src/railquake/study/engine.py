@@ -183,8 +183,11 @@ def _compile(design: Design, work: Work, say: Callable[[str], None], make_lanes:
         if scenario.solver.contact == "grid" or kernel_key(scenario) in seen:
             continue
         seen.add(kernel_key(scenario))
-        with suppress(InputError):  # the run will say so
+        try:
             system = assemble(scenario)
+        except Exception:  # the row fails later, and says why
+            continue
+        with suppress(InputError):  # the run will say so
             group = group_of(system)
             if group in seen:
                 continue
