@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from railquake.cli.application import app
+from railquake.cli.shared import echo
 
 __all__ = ["report_with_notes"]
 
@@ -52,7 +53,7 @@ def report_with_notes(
     from railquake.report import write_report
 
     def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
+        echo(f"railquake: {text}", err=True)
 
     page = write_report(folder, out, hazard=hazard, records=records, notify=say)
-    typer.echo(f"report                   {page.resolve()}")
+    echo(f"report                   {page.resolve()}")

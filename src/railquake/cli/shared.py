@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from railquake.errors import InputError
+from railquake.errors import InputError, printable
 from railquake.files import read_file, whole_file
 from railquake.messages import reason, unreadable
 
@@ -23,6 +23,7 @@ __all__ = [
     "Json",
     "Out",
     "Picture",
+    "echo",
     "print_facts",
     "print_json",
     "progress_bar",
@@ -47,6 +48,14 @@ Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
 Picture = Annotated[Path | None, typer.Option("--picture", help="Picture (PNG) to write.")]
 
 
+def echo(text: str, *, err: bool = False) -> None:
+    """Print a text, its lines apart: names from files may hold what a terminal would obey."""
+    shown = "\n".join(map(printable, text.replace("\t", "    ").split("\n")))
+    encoding = getattr(sys.stderr if err else sys.stdout, "encoding", None) or "utf-8"
+    # a terminal that knows no umlauts shows what stands for them
+    typer.echo(shown.encode(encoding, "backslashreplace").decode(encoding), err=err)
+
+
 @contextmanager
 def terminal_bar(
     columns: Callable[[], Sequence[str | ProgressColumn]],
@@ -57,7 +66,7 @@ def terminal_bar(
     """
 
     def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
+        echo(f"railquake: {text}", err=True)
 
     if not sys.stderr.isatty():
         yield None, say
@@ -66,7 +75,7 @@ def terminal_bar(
     from rich.progress import Progress
 
     with Progress(*columns(), console=Console(stderr=True), transient=True) as bar:
-        yield bar, lambda text: bar.console.print(f"railquake: {text}", markup=False)
+        yield bar, lambda text: bar.console.print(f"railquake: {printable(text)}", markup=False)
 
 
 @contextmanager
@@ -91,10 +100,10 @@ def print_facts(facts: dict[str, Any]) -> None:
     for key, value in facts.items():
         if isinstance(value, list):
             for text in value:
-                typer.echo(f"{key.removesuffix('s')}: {text}")
+                echo(f"{key.removesuffix('s')}: {text}")
         elif value is not None:
             shown = f"{value:.6g}" if isinstance(value, float) else value
-            typer.echo(f"{key:22} {shown}")
+            echo(f"{key:22} {shown}")
 
 
 def read_column(path: Path, name: str) -> Any:
@@ -147,4 +156,4 @@ def print_json(value: Any) -> None:
     """Print JSON to standard output."""
     from railquake.report.run_folder import json_text
 
-    typer.echo(json_text(value))
+    echo(json_text(value))

@@ -12,7 +12,7 @@ import typer
 
 from railquake.cli.application import app
 from railquake.cli.stopping import STOPPED, STOPPED_TEXT
-from railquake.errors import InputError
+from railquake.errors import InputError, printable
 
 __all__ = ["Stopped", "main"]
 
@@ -83,5 +83,5 @@ def _usage(error: Any) -> str:
 
 
 def _complain(message: str, status: int) -> int:
-    print(f"railquake: {message}", file=sys.stderr)
+    print(f"railquake: {printable(message)}", file=sys.stderr)
     return status

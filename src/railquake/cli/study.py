@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.cli.application import app
-from railquake.cli.shared import Json, Out, terminal_bar
+from railquake.cli.shared import Json, Out, echo, terminal_bar
 from railquake.cli.status import Stopped
 
 if TYPE_CHECKING:
@@ -116,11 +116,11 @@ def run_with_progress(study: Study, out: Path, **options: Any) -> pd.DataFrame:
         ) from None
     counts = table["status"].value_counts()
     listed = ", ".join(f"{count} {status}" for status, count in counts.items())
-    typer.echo(f"{len(table)} runs: {listed}")
+    echo(f"{len(table)} runs: {listed}")
     failed = table[table["status"] == "failed"]
     for text, rows in list(failed.groupby("error")["row"])[:5]:
-        typer.echo(f"failed: {text} (rows {_listed(list(rows))})")
-    typer.echo(f"table: {out / 'runs.parquet'}")
+        echo(f"failed: {text} (rows {_listed(list(rows))})")
+    echo(f"table: {out / 'runs.parquet'}")
     return table
 
 
@@ -174,10 +174,10 @@ def merge(
     from railquake.study import merge_results
 
     def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
+        echo(f"railquake: {text}", err=True)
 
     results = merge_results(folders, out, notify=say)
-    typer.echo(f"{len(results.table)} of {results.design.size} runs: {out / 'runs.parquet'}")
+    echo(f"{len(results.table)} of {results.design.size} runs: {out / 'runs.parquet'}")
 
 
 @app.command()

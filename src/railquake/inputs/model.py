@@ -177,6 +177,11 @@ def _reason(error: Mapping[str, Any]) -> str:
         return f"must be {context['expected'].replace(chr(39), chr(34))}, found {found}"
     if kind == "value_error":
         return str(context["error"])
+    if kind == "string_unicode":
+        return (
+            f"must be a text in UTF-8, found {found}; rename the file, or set a locale with UTF-8, "
+            "such as LC_ALL=C.UTF-8"
+        )
     if kind == "string_type":
         return f"must be a text, found {found}"
     if kind == "string_pattern_mismatch" or kind == "string_too_short":

@@ -224,7 +224,7 @@ def scaled_motion(motion: GroundMotion, factor: float, allow_high_pga: bool) -> 
         If the factor is zero, or the peak is above 3 g without consent, or above 100 g.
     """
     from railquake.inputs.ground_motion.read import PLAUSIBLE_PGA, POSSIBLE_PGA
-    from railquake.inputs.ground_motion.units import STANDARD_GRAVITY
+    from railquake.measures import STANDARD_GRAVITY
 
     if factor == 0.0:
         raise InputError(f"motion '{motion.name}': scale {SCALED_BY_ZERO}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
 from railquake.files import whole_folder
-from railquake.messages import reason
+from railquake.messages import csv_cell, reason
 from railquake.run.assess import assess
 
 if TYPE_CHECKING:
@@ -87,4 +87,4 @@ def _write_events(response: Response, path: Path) -> None:
         writer.writerow(["event", "begin_s", "end_s"])
         for event in response.events:
             end = "" if event.end_s != event.end_s else f"{event.end_s:.6g}"
-            writer.writerow([event.name, f"{event.begin_s:.6g}", end])
+            writer.writerow([csv_cell(event.name), f"{event.begin_s:.6g}", end])

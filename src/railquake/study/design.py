@@ -310,7 +310,9 @@ class Design:
             self.scenario(self.point(row * inner))
         rows_of_member = self.size // len(self.members)
         for member in range(len(self.members)):
-            for row in self._extremes(range(member * rows_of_member, (member + 1) * rows_of_member)):
+            for row in self._extremes(
+                range(member * rows_of_member, (member + 1) * rows_of_member)
+            ):
                 self._check_motions(self.point(row))
 
     def _extremes(self, rows: range) -> list[int]:

@@ -95,7 +95,9 @@ class StudyInputs:
         InputError
             Naming the field, what was found and what to write.
         """
-        refuse_unknown((key for key in tables if key not in ("railquake", FOLDER)), _SECTIONS, f"{where}: ")
+        refuse_unknown(
+            (key for key in tables if key not in ("railquake", FOLDER)), _SECTIONS, f"{where}: "
+        )
         if "base" not in tables:
             raise InputError(
                 f'{where}: base: missing; write e.g. [base] case = "case.toml", or the tables of a '

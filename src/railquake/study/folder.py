@@ -93,6 +93,11 @@ class ResultsFolder:
                 text = "# Written by railquake: the study of this folder.\n" + dumps(tables)
                 with whole_file(file, durable=True) as part:
                     part.write_text(text, encoding="utf-8")
+        except UnicodeEncodeError:
+            raise InputError(
+                f"--out {self.path}: a path of the study is not UTF-8 and cannot be noted in "
+                f"{STUDY_FILE}; rename it, or set a locale with UTF-8, such as LC_ALL=C.UTF-8"
+            ) from None
         except OSError as error:
             raise InputError(f"--out {self.path}: cannot be written: {reason(error)}") from None
 

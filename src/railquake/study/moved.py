@@ -66,9 +66,7 @@ def _walk(
     return value
 
 
-def _moved(
-    key: str, path: str, here: Path, former: PurePath | None, records: Path | None
-) -> str:
+def _moved(key: str, path: str, here: Path, former: PurePath | None, records: Path | None) -> str:
     if key in _RECORDS and records is not None:
         return _in_folder(PurePath(path), records)
     if former is None or is_file(path):

@@ -372,7 +372,9 @@ def test_a_peak_above_3_g_after_scale_needs_the_same_consent_as_in_the_file(orig
 
     assert peak(294.0) == pytest.approx(2.998, abs=1e-3)
     for sign in (1.0, -1.0):
-        with pytest.raises(InputError, match=r"PGA is 3.008 g with scale = -?295, over 3 g; .*allow"):
+        with pytest.raises(
+            InputError, match=r"PGA is 3.008 g with scale = -?295, over 3 g; .*allow"
+        ):
             peak(sign * 295.0)
         assert peak(sign * 295.0, consent=True) == pytest.approx(3.008, abs=1e-3)
         for consent in (False, True):

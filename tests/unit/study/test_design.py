@@ -125,7 +125,9 @@ def test_levels_of_a_suite_need_consent_above_3_g():
 def test_a_factor_of_zero_on_an_axis_is_refused(where):
     axes = {
         "list": {"motion.scale": [1.0, 0.0]},
-        "variant": {"how": [{"name": "all", "set": {}}, {"name": "no", "set": {"motion.scale": 0}}]},
+        "variant": {
+            "how": [{"name": "all", "set": {}}, {"name": "no", "set": {"motion.scale": 0}}]
+        },
     }[where]
     axes["vehicle.speed"] = ["0.01 km/h", "80 km/h"]
     with pytest.raises(InputError, match="scale must not be 0"):
