@@ -101,7 +101,7 @@ class InputModel(BaseModel):
             raise PydanticCustomError(
                 "table", "must be a table, found {found}", {"found": toml_type(data)}
             )
-        data = cls._normalised(dict(data))
+        data = cls._normalised({key: _plain(value) for key, value in data.items()})
         known = (*cls.model_fields, *cls.added_tables())
         for key in data:
             if key not in known:
@@ -117,6 +117,13 @@ class InputModel(BaseModel):
                 raise PydanticCustomError("missing_key", "missing{advice}",
                                           {"key": key, "advice": advice})  # fmt: skip
         return data
+
+
+def _plain(value: Any) -> Any:
+    """Python's own kind of number for one of numpy's."""
+    if type(value).__module__ == "numpy" and getattr(value, "ndim", None) == 0:
+        return value.item()
+    return value
 
 
 def named_list(key: str, tables: Mapping[str, Any]) -> list[Any]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from numbers import Real
 from pathlib import Path
 from typing import Any, Self
 
@@ -224,11 +226,17 @@ def _levels(levels: Any, where: str) -> dict[str, float]:
         )
     found: dict[str, float] = {}
     for name, factor in levels.items():
-        number = isinstance(factor, int | float) and not isinstance(factor, bool)
-        if not number or not (math.isfinite(factor) and factor > 0.0):
-            raise InputError(f"{where}.{name}: must be a number over zero, found {shown(factor)}")
-        found[str(name)] = float(factor)
+        found[str(name)] = _factor(factor, f"{where}.{name}")
     return found
+
+
+def _factor(value: Any, where: str) -> float:
+    """A factor on motions."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        with suppress(OverflowError):  # a whole number of hundreds of digits
+            if 0.0 < float(value) < math.inf:
+                return float(value)
+    raise InputError(f"{where}: must be a number over zero, found {shown(value)}")
 
 
 def _members(items: Any, name: Any, where: str) -> Suite:
@@ -237,13 +245,12 @@ def _members(items: Any, name: Any, where: str) -> Suite:
     members: list[SuiteMember] = []
     for item in items:
         try:
-            member = SuiteMember(
-                str(item["name"]), dict(item["motion"]), float(item["scale_factor"])
-            )
+            name_of, motion, factor = str(item["name"]), dict(item["motion"]), item["scale_factor"]
         except (KeyError, TypeError, ValueError):
             raise InputError(
                 f"{where}.members: each needs name, motion and scale_factor, found "
                 + toml_type(item)
             ) from None
-        members.append(member)
+        factor = _factor(factor, f"{where}.members.{name_of}.scale_factor")
+        members.append(SuiteMember(name_of, motion, factor))
     return Suite(str(name), tuple(members))

@@ -208,10 +208,10 @@ def _simpack_unit(path: Path, header: _Header) -> float:
         raise InputError(
             f"{path}: units.len.f is missing; it gives the lengths per metre (mm: 1000)"
         )
-    if units <= 0.0:
+    if units < 1.0 / LARGEST_NUMBER:
         raise InputError(
             f"{path}, line {header['units.len.f'][1]}: units.len.f is {units:g}; "
-            "it must be positive"
+            f"it must be {'positive' if units <= 0.0 else 'the lengths per metre (mm: 1000)'}"
         )
     return units
 
