@@ -75,13 +75,16 @@ def read_file(path: str | os.PathLike[str], largest: int = LARGEST_FILE) -> byte
         if error.errno == errno.ENXIO:  # a socket
             raise OSError(errno.EINVAL, "it is no regular file") from None
         raise
-    with open(number, "rb") as file:
+    try:
         found = os.fstat(number)
         if stat.S_ISDIR(found.st_mode):
             raise OSError(errno.EISDIR, "it is a folder; name a file in it")
         if not stat.S_ISREG(found.st_mode):
             raise OSError(errno.EINVAL, "it is no regular file")
-        data = file.read(largest + 1)
+        with open(number, "rb", closefd=False) as file:
+            data = file.read(largest + 1)
+    finally:
+        os.close(number)
     if len(data) > largest:
         raise OSError(errno.EFBIG, f"it is over {largest / 2**20:.3g} MiB, too large to be meant")
     return data
