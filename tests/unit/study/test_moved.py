@@ -9,8 +9,8 @@ from railquake.study.moved import FOLDER, found_again
 
 @pytest.fixture
 def places(tmp_path):
-    """A folder of records of which two bear one name, and a study's tables that name them."""
-    for name in ("old/recs/a/R.AT2", "old/recs/b/R.AT2", "old/rail.prr"):
+    """A folder of records of which three bear one name, and a study's tables that name them."""
+    for name in ("old/recs/a/R.AT2", "old/recs/b/R.AT2", "old/recs/R.AT2", "old/rail.prr"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(name)
     old = tmp_path / "old"
