@@ -63,6 +63,7 @@ def jolt(name, dt=DT, sign=1.0, frame=FRAME, **pier):
     return rq.scenario(
         support={**PIER, **pier},
         motion=GroundMotion("jolt", 1e-3, SIDEWAYS),
+        allow_high_pga=True,
         vertical=GroundMotion("jolt", 1e-3, UPWARDS),
         dt=dt,
         history_step=frame,

@@ -145,7 +145,10 @@ AT_GRADE = {"support": "at-grade"}
 SHORT = shaking(3, 0.6, 2)
 STRONG = shaking(3, 1.5, dt="0.004 s")
 STRONGER = shaking(8, 2.5, ground_frequency="1.8 Hz")
-VIOLENT = shaking(8, 5.0, 6, ground_frequency="1.2 Hz", highpass_frequency="0.3 Hz")
+VIOLENT = {
+    **shaking(8, 5.0, 6, ground_frequency="1.2 Hz", highpass_frequency="0.3 Hz"),
+    "allow_high_pga": True,
+}
 VERTICAL_DT = 0.005
 
 
@@ -284,6 +287,7 @@ SIDEWAYS = [0.0, 500.0, 900.0, 900.0, 400.0, -600.0, -200.0]  # m/s2, each milli
 UPWARDS = [0.0, 20.0, -60.0, -60.0, 30.0, 50.0, 0.0]
 JOLT = {
     "motion": rq.GroundMotion("jolt", 1e-3, SIDEWAYS),
+    "allow_high_pga": True,
     "vertical": rq.GroundMotion("jolt", 1e-3, UPWARDS),
     "dt": "2e-5 s",
     "history_step": "1e-4 s",
@@ -292,6 +296,7 @@ BLOW = {
     "motion": rq.GroundMotion(
         "blow", 2e-3, [0.0, 300.0, 300.0, 200.0, 0.0, -200.0, -200.0, *4 * [0.0]]
     ),
+    "allow_high_pga": True,
     "dt": "2e-5 s",
 }
 PUSH = {

@@ -1,33 +1,92 @@
-"""Writing files and folders: whole or not at all, and known to be possible before a long run.
+"""Reading named files; writing files and folders whole or not at all, known to be possible.
+
+What is read is a regular file of a sensible size, whatever was named: a folder, a device and a
+pipe, which may have no end or wait for ever, are refused before a byte is asked of them.
 
 What is written lies under a hidden, random name that ends with ``.part`` until its writer is done,
 and is then moved into its place: whoever reads sees the former state or the new one, and an
-interruption leaves nothing behind.
+interruption leaves nothing behind.  What a killed process left is removed by the next (`parts`).
 """
 
 from __future__ import annotations
 
+import errno
 import os
 import secrets
-import shutil
-import signal
+import stat
 import tempfile
-import threading
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from railquake.errors import InputError
 from railquake.messages import reason
+from railquake.parts import new_file, new_folder, sweep, uninterrupted
 
 __all__ = [
+    "is_file",
     "prepare_folder",
     "random_name",
+    "read_file",
     "set_aside",
-    "uninterrupted",
     "whole_file",
     "whole_folder",
 ]
+
+OUR_FOLDERS = "railquake"  # what a folder's part is named after: the folder may be moved
+
+
+def is_file(path: str | os.PathLike[str]) -> bool:
+    """Whether there is such a file; False for a name that no file can have."""
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):
+        return False
+
+
+LARGEST_FILE = 256 * 2**20
+"""Bytes; no input that a person names is larger."""
+
+
+def read_file(path: str | os.PathLike[str], largest: int = LARGEST_FILE) -> bytes:
+    """All of a regular file.
+
+    Parameters
+    ----------
+    path : str or Path
+        As somebody named it.
+    largest : int
+        More bytes than these are not read.
+
+    Raises
+    ------
+    OSError
+        Whatever is wrong, with words for the one who named it: also a folder, a device, a pipe, a
+        file that is too large, and a name that no file can have.
+    """
+    # a pipe without a writer would make open() wait: it does not with this flag
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    try:
+        number = os.open(path, flags)
+    except ValueError:  # a null character, or one that the system's encoding lacks
+        raise OSError(errno.EINVAL, "no file can have this name") from None
+    except OSError as error:
+        if error.errno == errno.ENXIO:  # a socket
+            raise OSError(errno.EINVAL, "it is no regular file") from None
+        raise
+    try:
+        found = os.fstat(number)
+        if stat.S_ISDIR(found.st_mode):
+            raise OSError(errno.EISDIR, "it is a folder; name a file in it")
+        if not stat.S_ISREG(found.st_mode):
+            raise OSError(errno.EINVAL, "it is no regular file")
+        with open(number, "rb", closefd=False) as file:
+            data = file.read(largest + 1)
+    finally:
+        os.close(number)
+    if len(data) > largest:
+        raise OSError(errno.EFBIG, f"it is over {largest / 2**20:.3g} MiB, too large to be meant")
+    return data
 
 
 def prepare_folder(folder: Path) -> None:
@@ -78,11 +137,10 @@ def whole_file(path: Path, *, durable: bool = False, replace: bool = True) -> It
     Raises
     ------
     OSError
-        If it cannot be written or moved.
+        If it cannot be written or moved, or if there is a device, a pipe or a folder.
     """
-    part = path.with_name(f".{path.name}.{secrets.token_hex(8)}.part")
-    try:
-        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    _refuse_to_replace(path)
+    with new_file(path.parent, path.name) as part:
         yield part
         if durable:
             with part.open("rb+") as file:
@@ -94,9 +152,6 @@ def whole_file(path: Path, *, durable: bool = False, replace: bool = True) -> It
                 os.link(part, path)
         if durable:
             _note_folder(path.parent)
-    finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -132,25 +187,24 @@ def whole_folder(
     # In a folder that is there already the temporary one lies inside: its parent may be another
     # file system, or closed to us.
     above = folder if folder.is_dir() else folder.absolute().parent
-    part = above / f".{secrets.token_hex(8)}.part"
-    made = [parent for parent in part.parents if not parent.exists()]
-    try:
-        part.mkdir(parents=True)
+    sweep(folder.absolute().parent, OUR_FOLDERS)
+    with new_folder(above, OUR_FOLDERS) as part:
         yield part
         with uninterrupted():
             _move_all(part, folder, ours, last)
-    finally:
-        with uninterrupted():
-            shutil.rmtree(part, ignore_errors=True)
-            for parent in made:
-                with suppress(OSError):  # it holds the results
-                    parent.rmdir()
 
 
 def set_aside(path: Path, suffix: str) -> None:
     """Give a file another suffix, if that can be done: what is damaged is looked at once."""
     with suppress(OSError):
         os.replace(path, path.with_suffix(suffix))
+
+
+def _refuse_to_replace(path: Path) -> None:
+    """Refuse what is no file: to move one into the place of a device would be the device's end."""
+    with suppress(FileNotFoundError):
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise OSError(errno.EEXIST, "is a device, a pipe or a folder; name a file", str(path))
 
 
 def _move_all(part: Path, folder: Path, ours: Collection[str], last: str | None) -> None:
@@ -172,23 +226,3 @@ def _note_folder(folder: Path) -> None:
             os.fsync(listed)
         finally:
             os.close(listed)
-
-
-@contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Let Ctrl-C and the request to terminate wait until the block is done."""
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread is interrupted
-        return
-    arrived: list[int] = []
-    former = {
-        number: signal.signal(number, lambda number, _: arrived.append(number))
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
-    try:
-        yield
-    finally:
-        for number, handler in former.items():
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
-        if arrived:
-            signal.raise_signal(arrived[0])

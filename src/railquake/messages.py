@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import difflib
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from railquake.errors import InputError
 
 __all__ = [
+    "csv_cell",
     "did_you_mean",
     "first_line",
     "no_folder",
     "on_one_line",
     "reason",
     "refuse_unknown",
+    "shell_word",
     "shown",
     "toml_type",
     "unreadable",
@@ -105,8 +108,31 @@ def refuse_unknown(keys: Iterable[object], known: Sequence[str], before: str) ->
             raise InputError(f"{before}{key}: unknown key; {did_you_mean(key, known)}")
 
 
+def csv_cell(text: str) -> str:
+    """A text for a cell of a CSV file that no spreadsheet takes for a formula; numbers stay."""
+    if not text.lstrip().startswith(("=", "+", "-", "@")) and text[:1] not in ("\t", "\r"):
+        return text
+    try:
+        float(text)
+    except ValueError:
+        return f"'{text}"
+    return text
+
+
+def shell_word(path: str | Path) -> str:
+    """A path as it is typed in a command: quoted, and no option though it begins with a dash."""
+    text = str(path)
+    return shlex.quote(f"./{text}" if text.startswith("-") else text)
+
+
 def shown(value: object) -> str:
     """Show a value in a message: in one short line, whatever it is."""
+    if (
+        type(value).__module__ == "numpy"
+        and hasattr(value, "item")
+        and not getattr(value, "ndim", 1)
+    ):
+        value = value.item()
     if isinstance(value, str):
         return '"' + " ".join(value[:60].split()) + '"'
     if isinstance(value, int) and abs(value) >= 10**60:

@@ -326,6 +326,31 @@ def test_results_cannot_go_where_a_file_is(case, tmp_path, capsys):
     assert "taken" in refused(capsys, "run", case, "--out", tmp_path / "taken")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="has no such limits")
+@pytest.mark.parametrize("size", [100, 3_000, 30_000])
+def test_a_run_that_finds_the_disk_full_leaves_nothing(case, tmp_path, capsys, size):
+    """Wherever it gets full: in a text, in the histories (HDF5 ends the process), in a picture."""
+    import resource
+
+    assert main(["check", str(case)]) == 0  # what can be kept of it is kept
+    capsys.readouterr()
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        status = main(["run", str(case), "--out", str(tmp_path / "a" / "out")])
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert status == 2
+    complaint = [
+        line
+        for line in capsys.readouterr().err.splitlines()
+        if "compiling" not in line and "in memory" not in line
+    ]
+    folder = tmp_path / "a" / "out"
+    assert complaint == [f"railquake: {folder}: cannot be written: File too large"]
+    assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
+
+
 def listens(process: subprocess.Popen[str]) -> bool:
     """Whether a process has put its own answer to a request to terminate in place."""
     known = Path(f"/proc/{process.pid}/status").read_text()
@@ -452,6 +477,52 @@ def test_reader_of_a_pipe_may_leave():
     command = f"{sys.executable} -m railquake presets bart | true"
     done = subprocess.run(command, shell=True, capture_output=True, text=True)
     assert done.stderr == ""
+    assert done.returncode == 0
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device")
+@pytest.mark.parametrize("command", ["presets", "presets bart --json", "--help", "run --help"])
+def test_a_full_output_is_one_line(command):
+    command = f"{sys.executable} -m railquake {command} > /dev/full"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert done.returncode == 2
+    text = "railquake: standard output cannot be written: No space left on device\n"
+    assert done.stderr == text
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device")
+@pytest.mark.parametrize("where", ["2> /dev/full", "2>&-"])
+def test_what_cannot_be_complained_of_is_told_by_the_status(where):
+    command = f"{sys.executable} -m railquake presets nothing {where}"
+    assert subprocess.run(command, shell=True).returncode == 2
+
+
+def test_the_end_of_what_is_read_is_no_wish_to_stop(monkeypatch):
+    """Of a damaged file, say: the framework takes it for Ctrl-C."""
+    from railquake.inputs import presets
+
+    def ends():
+        raise EOFError("ran out of input")
+
+    monkeypatch.setattr(presets, "list_presets", ends)
+    with pytest.raises(EOFError, match="ran out"):
+        main(["presets"])
+
+
+@pytest.mark.parametrize("variable", ["NUMBA_DISABLE_JIT=1", "NUMBA_NUM_THREADS=0"])
+def test_an_environment_without_a_compiler_is_one_line(case, variable, tmp_path):
+    name, _, value = variable.partition("=")
+    for command in (["check", str(case)], ["run", str(case), "--out", str(tmp_path / "out")]):
+        done = subprocess.run(
+            [sys.executable, "-m", "railquake", *command],
+            capture_output=True,
+            text=True,
+            env={**os.environ, name: value, "RAILQUAKE_CACHE_DIR": str(tmp_path / "cache")},
+        )
+        assert done.returncode == 2
+        assert done.stderr.count("\n") == 1
+        assert done.stderr.startswith(f"railquake: {name} is ")
+    assert not (tmp_path / "out").exists()
 
 
 def test_help_is_quick():

@@ -3,10 +3,11 @@
 import os
 import stat
 import threading
+from pathlib import Path
 
 import pytest
 
-from railquake.files import whole_file, whole_folder
+from railquake.files import read_file, whole_file, whole_folder
 
 
 def names(folder):
@@ -132,3 +133,52 @@ def test_the_working_folder_may_be_written_to(tmp_path, monkeypatch):
     with whole_file(Path("b")) as part:
         part.write_text("2")
     assert names(tmp_path) == ["a", "b"]
+
+
+@pytest.mark.skipif(not Path("/dev/null").exists(), reason="no such device")
+@pytest.mark.parametrize("kind", ["fifo", "folder", "device"])
+def test_what_is_no_file_is_not_replaced_by_one(tmp_path, kind):
+    """A picture written to /dev/null by an administrator must leave the device a device."""
+    path = tmp_path / "a"
+    if kind == "fifo":
+        os.mkfifo(path)
+    elif kind == "folder":
+        path.mkdir()
+    else:
+        path.symlink_to("/dev/null")
+    with pytest.raises(OSError, match="is a device, a pipe or a folder"), whole_file(path):
+        raise AssertionError("nothing to write to")
+    assert names(tmp_path) == ["a"]
+    assert not path.is_file()
+
+
+# --- reading what somebody named -----------------------------------------------------------
+
+
+def pipe(folder):
+    os.mkfifo(folder / "pipe")  # nobody writes to it: opening it would wait for ever
+    return folder / "pipe"
+
+
+@pytest.mark.parametrize(
+    ("named", "said"),
+    [
+        (lambda folder: folder, "it is a folder"),
+        (lambda folder: folder / "none", "No such file"),
+        (lambda folder: "/dev/zero", "no regular file"),
+        (pipe, "no regular file"),
+        (lambda folder: "a\0b", "no file can have this name"),
+    ],
+    ids=["folder", "missing", "device", "pipe", "null"],
+)
+def test_what_is_no_regular_file_is_refused_before_a_byte_is_read(tmp_path, named, said):
+    with pytest.raises(OSError, match=said):
+        read_file(named(tmp_path))
+
+
+def test_a_regular_file_is_read_whole_up_to_its_bound(tmp_path):
+    path = tmp_path / "a"
+    path.write_bytes(b"12345")
+    assert read_file(path, 5) == b"12345"
+    with pytest.raises(OSError, match="too large"):
+        read_file(path, 4)

@@ -325,3 +325,67 @@ def test_csv_refuses_what_pelicun_cannot_name_and_a_folder_that_is_not_there(tmp
     good = Fragility.fit(x, y, measure="pga", replicates=0)
     with pytest.raises(rq.InputError, match="cannot be written"):
         good.to_csv(tmp_path / "nowhere" / "x.csv")
+
+
+# --- what counts as an outcome -------------------------------------------------------------
+
+MEASURED = np.linspace(0.1, 2.0, 40)
+REACHED = MEASURED + 0.3 * np.sin(40.0 * MEASURED) > 1.0
+
+
+def fitted(reached, values=MEASURED, **options):
+    return Fragility.fit(values, reached, replicates=0, **options)
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        list(REACHED), REACHED.astype(int), REACHED.astype(float), REACHED.astype(object),
+        pd.Series(REACHED, dtype="boolean"), pd.Series(REACHED.astype(int), dtype="Int64"),
+    ],
+)  # fmt: skip
+def test_booleans_and_zeros_and_ones_are_the_same_outcomes(written):
+    assert fitted(written) == fitted(REACHED)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (["safe", "derailed"] * 20, 'found "safe"'),
+        (["False", "True"] * 20, 'found "False"'),
+        (REACHED.astype("U5"), 'found "False"'),
+        (np.where(REACHED, 2, 0), "found 2"),
+        (np.where(REACHED, 0.7, 0.0), "found 0.7"),
+        (np.where(REACHED, np.inf, 0.0), "found inf"),
+        (REACHED * np.timedelta64(1, "s"), "must be true or false"),
+        ([[True], [True, False]], "no plain list"),
+    ],
+)
+def test_anything_else_is_no_outcome(wrong, said):
+    with pytest.raises(rq.InputError, match=said) as error:
+        fitted(wrong)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("missing", [None, math.nan, pd.NA])
+def test_missing_outcomes_are_left_out_and_counted(missing):
+    reached = list(REACHED)
+    reached[3] = reached[30] = missing
+    there = [k for k in range(40) if k not in (3, 30)]
+    without = fitted(REACHED[there], MEASURED[there])
+    found = fitted(reached)
+    assert (found.left_out, found.runs) == (2, 38)
+    assert (found.theta, found.beta) == (without.theta, without.beta)
+
+
+def test_missing_measures_are_left_out_and_texts_refused():
+    values = pd.Series(MEASURED, dtype="Float64")
+    values[5] = pd.NA
+    assert fitted(REACHED, values).left_out == 1
+    with pytest.raises(rq.InputError, match='measure must be a number, found "0.1"'):
+        fitted(REACHED, [str(value) for value in MEASURED.round(2)])
+
+
+def test_runs_without_a_record_are_not_guessed():
+    with pytest.raises(rq.InputError, match="some runs have no record"):
+        fitted(REACHED, records=[None, *"abc" * 13])

@@ -57,8 +57,8 @@ def moves_a_file(node):
     return method in ("replace", "rename") and len(node.args) == 1 and not node.keywords
 
 
-def test_only_files_writes_under_another_name():
-    assert offenders(moves_a_file) == {"railquake.files"}
+def test_only_files_and_its_parts_write_under_another_name():
+    assert offenders(moves_a_file) == {"railquake.files", "railquake.parts"}
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,7 @@ def test_a_row_does_not_depend_on_its_neighbours(rows):
 
 
 def test_a_run_that_diverges_ends_with_that_frame_whatever_its_neighbours():
-    hopeless = rq.scenario(synthetic=SHORT, scale=100.0)
+    hopeless = rq.scenario(synthetic=SHORT, scale=100.0, allow_high_pga=True)
     brief = rq.scenario(synthetic={**SHORT, "duration": "0.9 s", "highpass_frequency": "1.3 Hz"})
     alone = dict(rq.simulate_many([hopeless], threads=1))[0]
     assert alone["status"] == "diverged"

@@ -4,12 +4,14 @@ import pytest
 
 from railquake.errors import InputError
 from railquake.messages import (
+    csv_cell,
     did_you_mean,
     first_line,
     no_folder,
     on_one_line,
     reason,
     refuse_unknown,
+    shell_word,
     shown,
     unreadable,
 )
@@ -55,3 +57,27 @@ def test_values_are_shown_in_one_short_line():
     assert shown("a\nb") == '"a b"'
     assert len(shown(list(range(100)))) == 60
     assert shown(10**70) == "a number of more than 60 digits"
+
+
+def test_no_message_is_obeyed_by_a_terminal():
+    error = InputError("a.toml: \x1b[31m\x07\u202e\nkey\udce9")
+    assert str(error) == r"a.toml: \x1b[31m\x07\u202e\nkey\udce9"
+
+
+@pytest.mark.parametrize(
+    ("text", "cell"),
+    [
+        ("=1+1", "'=1+1"), ("+cmd", "'+cmd"), ("-x", "'-x"), ("@SUM", "'@SUM"), (" =1", "' =1"),
+        ("\tx", "'\tx"), ("-5%", "'-5%"),
+        ("-1.5", "-1.5"), ("+2e-3", "+2e-3"), ("plain", "plain"), ("a=b", "a=b"), ("", ""),
+    ],
+)  # fmt: skip
+def test_no_cell_is_a_formula_and_numbers_stay_numbers(text, cell):
+    assert csv_cell(text) == cell
+
+
+@pytest.mark.parametrize(
+    ("path", "word"), [("-x", "./-x"), ("a b", "'a b'"), ("-a b", "'./-a b'"), ("plain", "plain")]
+)
+def test_a_path_in_a_command_is_no_option(path, word):
+    assert shell_word(path) == word

@@ -117,12 +117,15 @@ def fill_vehicle(q: Array, vehicle: VehicleMatrices, layout: Layout) -> None:
 
 def _fill_wheelrail(q: Array, wheelrail: WheelRail, speed: float, layout: Layout) -> None:
     constant, blocks = layout.constant, layout.constant_blocks
-    alpha_r = RESTITUTION_LAWS[wheelrail.restitution_law].coefficient(wheelrail.restitution)
+    try:
+        alpha_r = RESTITUTION_LAWS[wheelrail.restitution_law].coefficient(wheelrail.restitution)
+    except (ValueError, ArithmeticError):  # a root that lies nearer to its pole than numbers do
+        alpha_r = math.inf
     if not math.isfinite(alpha_r):
         raise InputError(
-            f"wheelrail.restitution: {wheelrail.restitution:g} cannot be calibrated (the "
-            "hysteresis would be infinite); take a positive value or restitution_law = "
-            '"hunt-crossley"'
+            f"wheelrail.restitution: {wheelrail.restitution:g} cannot be reached with "
+            f'restitution_law = "{wheelrail.restitution_law}" (the hysteresis would be infinite, '
+            'or too large to be found); take 0.04 or more, or restitution_law = "hunt-crossley"'
         )
     q[constant.WHEELSET_HEIGHT] = wheelrail.rolling_radius
     q[constant.ALPHA_R] = alpha_r

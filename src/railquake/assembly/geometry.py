@@ -10,9 +10,9 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from railquake.errors import InputError
-from railquake.files import whole_file
 from railquake.laws import CREEP_LAWS
 from railquake.march.compiler import SCALAR, bind, cache_folder, source_hash
+from railquake.march.compiler.cache import check_compiler, keep, kept
 from railquake.memory import Bounded
 from railquake.physics.contact_table import FIELDS, Axis, RunningCircle, axis_nodes, fill_table
 from railquake.physics.hertz import hertz_table
@@ -204,19 +204,12 @@ def _table(digest: str, geometry: Geometry, circle: RunningCircle) -> Array:
 
 def _kept(digest: str, size: int, fill: Callable[[Array], None]) -> Array:
     """A table from the cache on disk, or made now and kept there."""
-    path = cache_folder() / "tables" / f"{digest[:32]}.npy"
-    try:
-        table: Array = np.load(path, allow_pickle=False)
-        if table.shape == (size,) and table.dtype == np.float64:
-            return table
-    except (OSError, ValueError):
-        pass  # absent or damaged: made again
+    path = cache_folder() / "tables" / f"{digest[:32]}.table"
+    content = kept(path)
+    if content is not None and len(content) == size * np.dtype(np.float64).itemsize:
+        return np.frombuffer(content).copy()  # for the compiler one that is read only is another
+    check_compiler()
     table = np.empty(size)
     fill(table)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as part, part.open("wb") as file:
-            np.save(file, table)
-    except OSError:
-        pass  # a cache that cannot be written costs seconds in each process, nothing more
+    keep(path, table.tobytes())
     return table

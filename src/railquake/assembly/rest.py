@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -62,18 +63,24 @@ def loaded_hinge(law: HingeLaw, parameters: Any, moment: float) -> LoadedHinge:
 
     at = LoadedHinge(0.0, 0.0, parameters.k0, law.virgin)
     if moment != 0.0:
+        cannot = InputError(
+            f"the hinge cannot carry the standing train: a moment of {abs(moment):.3g} N m is "
+            "needed; check support.bouc_wen (k0, beta0) and support.track_offset"
+        )
         increment = moment / parameters.k0 / 100.0
+        if not math.isfinite(moment) or increment == 0.0:
+            raise cannot
         for _ in range(20_000):
             after = turned(at, increment)
             if abs(after.moment) >= abs(moment):
                 break
             at = after
         else:
-            raise InputError(
-                f"the hinge cannot carry the standing train: a moment of {abs(moment):.3g} N m is "
-                "needed; check support.bouc_wen (k0, beta0) and support.track_offset"
-            )
-        last = brentq(lambda by: turned(at, by).moment - moment, 0.0, increment, xtol=1e-18)
+            raise cannot
+        try:
+            last = brentq(lambda by: turned(at, by).moment - moment, 0.0, increment, xtol=1e-18)
+        except (ValueError, RuntimeError):  # it pushes the wrong way there, or jumps
+            raise cannot from None
         at = turned(at, float(last))
     held = turned(at, 0.0)
     return LoadedHinge(at.rotation, held.moment, held.tangent, at.state)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -34,9 +35,11 @@ from railquake.inputs.ground_motion.motion import cumulative_trapezoid, without_
 from railquake.inputs.identity import files_of
 from railquake.march import frames
 from railquake.march.compiler import CUDA, SCALAR, Kernel, Target, bind
+from railquake.march.compiler.cache import check_compiler
 from railquake.march.rows import Layout, layout_of
 from railquake.march.slots import chosen, joining, solving
 from railquake.memory import Bounded
+from railquake.messages import on_one_line
 from railquake.physics.hinge import HINGE_LAWS
 from railquake.physics.profiles import Geometry
 
@@ -149,6 +152,8 @@ class System:
         laws = chosen({**self.choices, "engine": engine})
         laws.update(joining(self.vehicle.joints.joined))
         laws.update(solving(self.structure.hinge, linearised, abreast=not alone))
+        if target.compiled:
+            check_compiler()
         return bind(
             entries[engine], target, laws, _layout(self.structure, self.vehicle, target.lanes)
         )
@@ -169,8 +174,29 @@ def assemble(scenario: Scenario) -> System:
     ------
     InputError
         If a file of the scenario cannot be used, wheel and rail do not meet, the hinge cannot
-        carry the standing train or the time step is above the critical one.
+        carry the standing train, the time step is above the critical one, or its numbers are
+        beyond what can be computed with.
     """
+    with _computable():
+        return _assemble(scenario)
+
+
+@contextmanager
+def _computable() -> Iterator[None]:
+    """Say in one line that inputs, each of them possible, overflow or cancel with each other."""
+    try:
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            yield
+    except InputError:
+        raise
+    except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+        raise InputError(
+            "the scenario cannot be assembled: its numbers are beyond what can be computed with "
+            f"({on_one_line(error)}); look for a value that is far too large or too small"
+        ) from error
+
+
+def _assemble(scenario: Scenario) -> System:
     solver = scenario.solver
     ground = scenario.ground_motion()
     steps = ground.duration / solver.step
@@ -194,7 +220,8 @@ def critical_time_step(scenario: Scenario) -> float:
     InputError
         If the scenario cannot be assembled.
     """
-    return _at_rest(scenario.with_step(SHORT_STEP)).critical_dt
+    with _computable():
+        return _at_rest(scenario.with_step(SHORT_STEP)).critical_dt
 
 
 class _AtRest(NamedTuple):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,8 +14,9 @@ from typing import Any, Literal
 import numpy as np
 
 from railquake.errors import InputError
-from railquake.inputs.units import to_si
-from railquake.messages import did_you_mean
+from railquake.files import read_file
+from railquake.inputs.units import number_of, to_si
+from railquake.messages import did_you_mean, unreadable
 
 __all__ = ["Kind", "Loop", "check_loop", "read_loop", "resampled"]
 
@@ -31,6 +33,9 @@ MOMENTS = (1e2, 1e10)  # N m
 # Peak moment over length cubed, Pa.  It is the same for a model of any size: (0.03 to 0.5) f'c
 # (D / L)^3 with f'c of 15 to 100 MPa and D / L from 1/12 to 1/1.5 spans 260 Pa to 15 MPa.
 INTENSITIES = (2e2, 2e7)
+
+_RATIOS = {"%": 0.01, "percent": 0.01, "per cent": 0.01, "rad": 1.0, "mrad": 1e-3}
+_TONS = ("tonf", "ton", "tons", "t", "tonf m", "ton m", "t m")
 
 # words that name a column, and the dimension of its values
 _AXES: dict[Kind, tuple[tuple[tuple[str, ...], str], tuple[tuple[str, ...], str]]] = {
@@ -101,6 +106,7 @@ def read_loop(
     path : str or Path
         CSV with a first line that names two columns and their units, such as
         ``displacement_mm,force_kN`` or ``rotation [rad],moment [kN m]``; others are ignored.
+        Tabs or semicolons may part them; a drift may be in per cent of the length.
     kind : {"force-displacement", "moment-rotation"}
     length : float, optional
         From the base to the load, m; a force-displacement loop needs it.
@@ -130,18 +136,18 @@ def read_loop(
             )
         to_si(length, "length", "--length", sign="positive")
     lines = _lines(path)
-    names, found = lines[0][1], _columns(path, lines, kind, (rotation_unit, moment_unit))
+    names = lines[0][1]
+    found = _columns(path, lines, kind, (rotation_unit, moment_unit), length)
     values = []
     for number, cells in lines[1:]:
         row = []
         for index, factor in found:
             cell = cells[index].strip() if index < len(cells) else ""
-            try:
-                value = float(cell)
-            except ValueError:
+            value = number_of(cell)
+            if value is None:
                 raise InputError(
-                    f'{path}, line {number}: {names[index]}: "{cell[:40]}" is no number'
-                ) from None
+                    f'{path}, line {number}: {names[index]}: "{cell[:40]}" is {_no_number(cell)}'
+                )
             if not math.isfinite(value):
                 raise InputError(
                     f"{path}, line {number}: {names[index]}: must be a finite number, found {cell}"
@@ -322,14 +328,14 @@ def _first_slope(rotation: Array, moment: Array) -> float:
 
 def _lines(path: str | Path) -> list[tuple[int, list[str]]]:
     try:
-        with Path(path).open(encoding="utf-8-sig", newline="") as file:
-            lines = [
-                (number, [cell.strip() for cell in row])
-                for number, row in enumerate(csv.reader(file), start=1)
-                if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
-            ]
+        text = read_file(path).decode("utf-8-sig")
+        lines = [
+            (number, [cell.strip() for cell in row])
+            for number, row in enumerate(_rows(text), start=1)
+            if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
+        ]
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+        raise unreadable(path, error) from None
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: is not a CSV text file: {error}") from None
     if not lines:
@@ -337,11 +343,30 @@ def _lines(path: str | Path) -> list[tuple[int, list[str]]]:
     return lines
 
 
+def _rows(text: str) -> Iterator[list[str]]:
+    """Rows of cells, parted by what stands most often in the first line that is no remark."""
+    lines = text.splitlines()
+    head = next((line for line in lines if line.strip() and not line.lstrip().startswith("#")), "")
+    # a comma may stand in a name ("force, kN"): tabs and semicolons go before it
+    separator = next((mark for mark in ("\t", ";") if mark in head), ",")
+    return csv.reader(lines, delimiter=separator)
+
+
+def _no_number(cell: str) -> str:
+    """What a cell is that is no number, and what to do."""
+    if re.fullmatch(r"[+-]?[0-9.]*,[0-9]+(?:[eE][+-]?[0-9]+)?", cell):
+        return "a number with a decimal comma; write decimal points"
+    if re.search(r"[0-9]:[0-9]{2}|[0-9]{4}-[0-9]{2}-[0-9]{2}", cell):
+        return "a date or time of day, no number"
+    return "no number"
+
+
 def _columns(
     path: str | Path,
     lines: list[tuple[int, list[str]]],
     kind: Kind,
     units: tuple[str | None, str | None],
+    length: float | None,
 ) -> list[tuple[int, float]]:
     """Index and factor to SI of the column of rotation and of that of moment."""
     number, header = lines[0]
@@ -371,6 +396,15 @@ def _columns(
                 f"such as {_example(kind)}, or give {option}"
             )
         where = f"{path}, line {number}: {header[index]}"
+        if unit.lower() in _TONS:
+            raise InputError(
+                f"{where}: {unit} may be 9.807 kN (metric) or 8.896 kN (US); write tf for the "
+                "metric one, or convert the forces to kN"
+            )
+        if dimension == "length" and length is not None and unit.lower() in _RATIOS:
+            # a drift is displacement over length
+            found.append((index, _RATIOS[unit.lower()] * length))
+            continue
         found.append((index, to_si(f"1 {unit}", dimension, where, sign="positive")))
     return found
 

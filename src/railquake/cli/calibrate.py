@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from railquake.cli.application import app
-from railquake.cli.shared import Json, Out, print_json, progress_bar
+from railquake.cli.shared import Json, Out, echo, print_json, progress_bar
 
 if TYPE_CHECKING:
     from railquake.calibration.calibrate import Calibration
@@ -158,5 +158,5 @@ def _finish(found: Calibration, out: Path, as_json: bool) -> None:
         print_json(row)
         return
     for line in summary_lines(found):
-        typer.echo(line)
-    typer.echo(f"\npreset, numbers and pictures  {out.resolve()}")
+        echo(line)
+    echo(f"\npreset, numbers and pictures  {out.resolve()}")

@@ -12,6 +12,7 @@ from railquake.cli.application import probe_app
 from railquake.cli.shared import (
     Json,
     Picture,
+    echo,
     print_facts,
     print_json,
     read_column,
@@ -19,6 +20,7 @@ from railquake.cli.shared import (
     write_text,
 )
 from railquake.errors import InputError
+from railquake.messages import csv_cell
 
 
 @probe_app.command("hinge")
@@ -84,10 +86,10 @@ def probe_hinge(
     lines = ["x,moment,z,damage"]
     lines += [",".join(repr(float(v)) for v in (a, *row)) for a, row in zip(x, rows, strict=True)]
     if out is None:
-        typer.echo("\n".join(lines))
+        echo("\n".join(lines))
     else:
         write_text(out, "\n".join(lines) + "\n")
-        typer.echo(f"{len(x)} rows: {out}")
+        echo(f"{len(x)} rows: {out}")
 
 
 @probe_app.command("motion")
@@ -122,7 +124,7 @@ def probe_motion(
     motion = motion.scaled(abs(scale))
     if scale < 0.0:
         motion = motion.mirrored()
-    warnings = list(motion.baseline_check())
+    warnings = [*motion.doubts(), *motion.baseline_check()]
     if picture is not None:
         from railquake.plots import write_motion_picture
 
@@ -207,10 +209,11 @@ def _shake_car(
     import numpy as np
 
     from railquake.inputs.ground_motion import read_motion
+    from railquake.inputs.motion import scaled_motion
     from railquake.probe import shake_held
 
-    ground = read_motion(record, allow_high_pga=high)
-    lateral = scale * ground.acceleration
+    ground = scaled_motion(read_motion(record, allow_high_pga=high), scale, high)
+    lateral = ground.acceleration
     found = shake_held(car, ground.time, lateral, np.zeros(len(lateral)))
     moved = found.displacements.reshape(len(found.times), -1)
     columns = _columns(found.bodies)
@@ -221,7 +224,7 @@ def _shake_car(
             for t, row in zip(found.times, moved, strict=True)
         ]
         if out is None:
-            typer.echo("\n".join(lines))
+            echo("\n".join(lines))
         else:
             write_text(out, "\n".join(lines) + "\n")
     if as_json:
@@ -231,7 +234,7 @@ def _shake_car(
 
 def _columns(bodies: tuple[str, ...]) -> list[str]:
     """Columns of the displacements of bodies."""
-    return [f"{body}_{what}" for body in bodies for what in ("y_m", "z_m", "roll_rad")]
+    return [csv_cell(f"{body}_{what}") for body in bodies for what in ("y_m", "z_m", "roll_rad")]
 
 
 @probe_app.command("contact")
@@ -275,6 +278,8 @@ def probe_contact(
     }
     pair = WheelRail.from_preset(preset, overrides)
     standing = standing_wheelset(pair, shift, load)
+    for doubt in pair.doubts():
+        echo(f"railquake: warning: {doubt}", err=True)
     if picture is not None:
         from railquake.plots.contact import write_contact_picture
 
@@ -282,9 +287,9 @@ def probe_contact(
     if as_json:
         print_json([vars(patch) for patch in standing.patches])
         return
-    typer.echo("side     y, mm      z, mm   angle, rad  approach, mm  normal, kN   a, mm   b, mm")
+    echo("side     y, mm      z, mm   angle, rad  approach, mm  normal, kN   a, mm   b, mm")
     for p in standing.patches:
-        typer.echo(
+        echo(
             f"{p.side:5} {1e3 * p.y_m:9.3f} {1e3 * p.z_m:10.4f} {p.angle_rad:11.5f} "
             f"{1e3 * p.approach_m:13.5f} {1e-3 * p.normal_n:11.3f} {1e3 * p.a_m:7.3f} "
             f"{1e3 * p.b_m:7.3f}"
@@ -368,4 +373,4 @@ def probe_creep(
     for name, force in (("lateral", found.lateral), ("longitudinal", found.longitudinal)):
         if name == "lateral" or longitudinal != 0.0:
             share = abs(force) / (mu * load)
-            typer.echo(f"{name} force {force:.6g} N, {share:.4f} of friction's limit")
+            echo(f"{name} force {force:.6g} N, {share:.4f} of friction's limit")

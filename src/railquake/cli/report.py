@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from railquake.cli.application import app
+from railquake.cli.shared import echo, say_on_stderr
 
 __all__ = ["report_with_notes"]
 
@@ -27,6 +28,10 @@ def report(
             "--hazard", help="Uniform hazard spectra to draw the suite against: a name or a CSV."
         ),
     ] = None,
+    records: Annotated[
+        Path | None,
+        typer.Option("--records", help="Folder of the records, if they were moved since."),
+    ] = None,
 ) -> None:
     """Write the report of a study: one HTML page that needs nothing else.
 
@@ -35,15 +40,17 @@ def report(
 
     Example: railquake report study
     """
-    report_with_notes(folder, out, hazard)
+    report_with_notes(folder, out, hazard, records)
 
 
-def report_with_notes(folder: Path, out: Path | None = None, hazard: str | None = None) -> None:
+def report_with_notes(
+    folder: Path,
+    out: Path | None = None,
+    hazard: str | None = None,
+    records: Path | None = None,
+) -> None:
     """Write a report, and say on standard error what takes long."""
     from railquake.report import write_report
 
-    def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
-
-    page = write_report(folder, out, hazard=hazard, notify=say)
-    typer.echo(f"report                   {page.resolve()}")
+    page = write_report(folder, out, hazard=hazard, records=records, notify=say_on_stderr)
+    echo(f"report                   {page.resolve()}")

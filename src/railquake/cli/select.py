@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from railquake.cli.application import app
-from railquake.cli.shared import Json, print_json, progress_bar, write_file, write_text
+from railquake.cli.shared import Json, echo, print_json, progress_bar, write_file, write_text
 from railquake.errors import InputError
-from railquake.messages import reason
+from railquake.messages import reason, shell_word
 
 if TYPE_CHECKING:
     from railquake.suite import Selection
@@ -117,12 +118,12 @@ def _print(chosen: Selection, manifest: Path, picture: Path, records: Path) -> N
     kinds = Counter(one.kind for one in chosen.skipped)
     if kinds:
         counts = ", ".join(f"{number} x {kind}" for kind, number in kinds.items())
-        typer.echo(f"skipped                  {sum(kinds.values())}: {counts}")
+        echo(f"skipped                  {sum(kinds.values())}: {counts}")
         damaged = [one for one in chosen.skipped if one.kind.startswith("damaged")]
         for one in damaged[:MOST_NAMED]:
-            typer.echo(f"  {one.reason}")
+            echo(f"  {one.reason}")
         if len(damaged) > MOST_NAMED:
-            typer.echo(f"  and {len(damaged) - MOST_NAMED} more")
+            echo(f"  and {len(damaged) - MOST_NAMED} more")
     worst = int(abs(chosen.deviation).argmax())
     factors = [member.scale_factor for member in chosen.suite.members]
     for label, text in (
@@ -136,6 +137,9 @@ def _print(chosen: Selection, manifest: Path, picture: Path, records: Path) -> N
         ),
         ("scale factors", f"{min(factors):g} to {max(factors):g}"),
     ):
-        typer.echo(f"{label:24} {text}")
-    typer.echo(f"{manifest}, {picture}")
-    typer.echo(f'in a study: [suite] manifest = "{manifest}", run with --records {records}')
+        echo(f"{label:24} {text}")
+    echo(f"{manifest}, {picture}")
+    echo(
+        f"in a study: [suite] manifest = {json.dumps(str(manifest), ensure_ascii=False)}, "
+        f"run with --records {shell_word(records)}"
+    )

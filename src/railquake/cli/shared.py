@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from railquake.errors import InputError
-from railquake.files import whole_file
+from railquake.errors import InputError, printable
+from railquake.files import read_file, whole_file
 from railquake.messages import reason, unreadable
 
 if TYPE_CHECKING:
@@ -23,10 +23,12 @@ __all__ = [
     "Json",
     "Out",
     "Picture",
+    "echo",
     "print_facts",
     "print_json",
     "progress_bar",
     "read_column",
+    "say_on_stderr",
     "terminal_bar",
     "write_file",
     "write_text",
@@ -47,6 +49,20 @@ Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
 Picture = Annotated[Path | None, typer.Option("--picture", help="Picture (PNG) to write.")]
 
 
+def echo(text: str, *, err: bool = False) -> None:
+    """Print a text, its lines apart: names from files may hold what a terminal would obey."""
+    shown = "\n".join(map(printable, text.replace("\t", "    ").split("\n")))
+    encoding = getattr(sys.stderr if err else sys.stdout, "encoding", None) or "utf-8"
+    # a terminal that knows no umlauts shows what stands for them
+    typer.echo(shown.encode(encoding, "backslashreplace").decode(encoding), err=err)
+
+
+def say_on_stderr(text: str) -> None:
+    """Say something that is no result; where it cannot be said, nothing is lost."""
+    with suppress(OSError):
+        echo(f"railquake: {text}", err=True)
+
+
 @contextmanager
 def terminal_bar(
     columns: Callable[[], Sequence[str | ProgressColumn]],
@@ -55,18 +71,15 @@ def terminal_bar(
 
     ``columns`` makes the bar's columns; called on a terminal only, since rich takes long to import.
     """
-
-    def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
-
-    if not sys.stderr.isatty():
+    say = say_on_stderr
+    if sys.stderr is None or not sys.stderr.isatty():
         yield None, say
         return
     from rich.console import Console
     from rich.progress import Progress
 
     with Progress(*columns(), console=Console(stderr=True), transient=True) as bar:
-        yield bar, lambda text: bar.console.print(f"railquake: {text}", markup=False)
+        yield bar, lambda text: bar.console.print(f"railquake: {printable(text)}", markup=False)
 
 
 @contextmanager
@@ -91,18 +104,20 @@ def print_facts(facts: dict[str, Any]) -> None:
     for key, value in facts.items():
         if isinstance(value, list):
             for text in value:
-                typer.echo(f"{key.removesuffix('s')}: {text}")
+                echo(f"{key.removesuffix('s')}: {text}")
         elif value is not None:
             shown = f"{value:.6g}" if isinstance(value, float) else value
-            typer.echo(f"{key:22} {shown}")
+            echo(f"{key:22} {shown}")
 
 
 def read_column(path: Path, name: str) -> Any:
     """One column of a CSV file, by name, or the first where there is no header."""
     import numpy as np
 
+    from railquake.inputs.units import number_of
+
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        lines = read_file(path).decode("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise unreadable(path, error) from None
     column, values = 0, []
@@ -111,27 +126,20 @@ def read_column(path: Path, name: str) -> Any:
         cells = [cell.strip() for cell in line.split(",")]
         if not line.strip() or line.startswith("#"):
             continue
-        if not started and not _is_number(cells[0]):
+        if not started and number_of(cells[0]) is None:
             if name not in cells:
                 raise InputError(f'{path}, line {number}: no column "{name}" among {line!r}')
             column, started = cells.index(name), True
             continue
         started = True
         text = cells[column] if column < len(cells) else ""
-        if not _is_number(text) or not np.isfinite(float(text)):
-            raise InputError(f'{path}, line {number}: "{text}" is no finite number')
-        values.append(float(text))
+        value = number_of(text)
+        if value is None or not np.isfinite(value):
+            raise InputError(f'{path}, line {number}: "{text[:40]}" is no finite number')
+        values.append(value)
     if not values:
         raise InputError(f"{path}: holds no rows; write a column {name}, one value a line")
     return np.array(values)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def write_file(path: Path, write: Callable[[Path], Any]) -> None:
@@ -152,4 +160,4 @@ def print_json(value: Any) -> None:
     """Print JSON to standard output."""
     from railquake.report.run_folder import json_text
 
-    typer.echo(json_text(value))
+    echo(json_text(value))

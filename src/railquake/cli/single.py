@@ -13,6 +13,7 @@ from railquake.cli.shared import (
     Changes,
     Json,
     Out,
+    echo,
     print_facts,
     print_json,
     progress_bar,
@@ -54,7 +55,7 @@ def run_scenario(scenario: Scenario, out: Path, as_json: bool) -> None:
         print_json(row)
         return
     _print_row(row)
-    typer.echo(f"numbers and pictures     {out.resolve()}")
+    echo(f"numbers and pictures     {out.resolve()}")
 
 
 def _simulate(scenario: Scenario) -> Response:
@@ -69,7 +70,7 @@ def _print_row(row: dict[str, Any]) -> None:
     how = f" ({row['derailment_mode']})" if row["derailed"] else ""
     if row["status"] in ("diverged", "not converged"):
         how = ": DO NOT USE THESE NUMBERS; take a smaller solver.dt"
-    typer.echo(f"status                   {row['status']}{how}")
+    echo(f"status                   {row['status']}{how}")
     for key, remark in (
         ("pga_m_s2", ""),
         ("pbd_m", ""),
@@ -81,11 +82,11 @@ def _print_row(row: dict[str, Any]) -> None:
         ("off_rail_time_s", ""),
         ("energy_residual", "of what is dissipated"),
     ):
-        typer.echo(_line(named(key), row[key], remark))
+        echo(_line(named(key), row[key], remark))
     if row["warnings"] is not None:
-        typer.echo("\n".join(f"{'warning':24} {text}" for text in row["warnings"].split("; ")))
+        echo("\n".join(f"{'warning':24} {text}" for text in row["warnings"].split("; ")))
     rate = 1e-6 * row["steps_per_s"]
-    typer.echo(f"{'steps':24} {row['steps']} at {rate:.2f} million a second")
+    echo(f"{'steps':24} {row['steps']} at {rate:.2f} million a second")
 
 
 def _line(measure: Measure, value: float | None, remark: str) -> str:
@@ -120,7 +121,7 @@ def presets(
             )
             return
         for preset in known:
-            typer.echo(f"{preset.kind:10} {preset.name:26} {preset.summary}")
+            echo(f"{preset.kind:10} {preset.name:26} {preset.summary}")
         return
     found = [preset for preset in known if preset.name == name]
     if not found:
@@ -133,7 +134,7 @@ def presets(
         )
         return
     for preset in found:
-        typer.echo(f'# [{preset.kind}] preset = "{preset.name}"\n{_preset_text(preset.path)}')
+        echo(f'# [{preset.kind}] preset = "{preset.name}"\n{_preset_text(preset.path)}')
 
 
 def _preset_text(path: Path) -> str:
@@ -151,10 +152,12 @@ def check(case: Case, changes: Changes = None, as_json: Json = False) -> None:
 
     scenario = load_scenario(case, changes or ())
     system = assemble(scenario)
-    warnings = list(system.ground.baseline_check())
+    warnings = [*system.ground.doubts(), *system.ground.baseline_check()]
+    warnings += scenario.wheelrail.doubts()
     vertical = scenario.vertical_motion()
     if vertical is not None:
-        warnings += [f"vertical: {text}" for text in vertical.baseline_check()]
+        found = (*vertical.doubts(), *vertical.baseline_check())
+        warnings += [f"vertical: {text}" for text in found]
     support = scenario.support
     facts = {
         "ok": True,
@@ -180,7 +183,7 @@ def check(case: Case, changes: Changes = None, as_json: Json = False) -> None:
         print_json(facts)
         return
     print_facts({key: value for key, value in facts.items() if key != "ok"})
-    typer.echo("the case can be run")
+    echo("the case can be run")
 
 
 @app.command()
@@ -224,4 +227,4 @@ def modes(
     for k, (frequency, label) in enumerate(zip(frequencies, labels, strict=True), 1):
         light = f"  ({without[k - 1]:.4f} Hz without gravity)" if matrices.is_finite else ""
         falls = "  unstable: it falls over by its own weight" if frequency < 0.0 else ""
-        typer.echo(f"{k:2}  {frequency:8.4f} Hz  {label}{light}{falls}")
+        echo(f"{k:2}  {frequency:8.4f} Hz  {label}{light}{falls}")

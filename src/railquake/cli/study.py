@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from railquake.cli.application import app
-from railquake.cli.shared import Json, Out, terminal_bar
+from railquake.cli.shared import Json, Out, echo, say_on_stderr, terminal_bar
 from railquake.cli.status import Stopped
 
 if TYPE_CHECKING:
@@ -116,11 +116,11 @@ def run_with_progress(study: Study, out: Path, **options: Any) -> pd.DataFrame:
         ) from None
     counts = table["status"].value_counts()
     listed = ", ".join(f"{count} {status}" for status, count in counts.items())
-    typer.echo(f"{len(table)} runs: {listed}")
+    echo(f"{len(table)} runs: {listed}")
     failed = table[table["status"] == "failed"]
     for text, rows in list(failed.groupby("error")["row"])[:5]:
-        typer.echo(f"failed: {text} (rows {_listed(list(rows))})")
-    typer.echo(f"table: {out / 'runs.parquet'}")
+        echo(f"failed: {text} (rows {_listed(list(rows))})")
+    echo(f"table: {out / 'runs.parquet'}")
     return table
 
 
@@ -173,11 +173,8 @@ def merge(
     """
     from railquake.study import merge_results
 
-    def say(text: str) -> None:
-        typer.echo(f"railquake: {text}", err=True)
-
-    results = merge_results(folders, out, notify=say)
-    typer.echo(f"{len(results.table)} of {results.design.size} runs: {out / 'runs.parquet'}")
+    results = merge_results(folders, out, notify=say_on_stderr)
+    echo(f"{len(results.table)} of {results.design.size} runs: {out / 'runs.parquet'}")
 
 
 @app.command()
@@ -189,6 +186,10 @@ def rerun(
         int, typer.Argument(metavar="ROW", help="Number of the row, from 0.", show_default=False)
     ],
     out: Out,
+    records: Annotated[
+        Path | None,
+        typer.Option("--records", help="Folder of the records, if they were moved since."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Run one row of a study again, as `railquake run` does.
@@ -200,4 +201,4 @@ def rerun(
     from railquake.cli.single import run_scenario
     from railquake.study import open_results
 
-    run_scenario(open_results(folder).scenario(row), out, as_json)
+    run_scenario(open_results(folder, records=records).scenario(row), out, as_json)

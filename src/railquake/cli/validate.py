@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from railquake.cli.application import app
-from railquake.cli.shared import Json, print_json
+from railquake.cli.shared import Json, echo, print_json
 
 NOT_GREEN = 1  # exit status
 
@@ -56,11 +56,11 @@ def validate(
 
     def show(report: Report) -> None:
         if not as_json:
-            typer.echo(f"{text_table([report])}\n")
+            echo(f"{text_table([report])}\n")
 
     def begin(name: str) -> None:
         if sys.stderr.isatty():
-            typer.echo(f"railquake: {name} ...", err=True)
+            echo(f"railquake: {name} ...", err=True)
 
     reports = run(names, folder, show, begin)
     undrawn = write_page(reports, page) if page is not None else []
@@ -68,10 +68,10 @@ def validate(
     if as_json:
         print_json({"green": green, "comparisons": [report.as_dict() for report in reports]})
     else:
-        typer.echo(summary(reports))
+        echo(summary(reports))
         if page is not None:
-            typer.echo(f"page and plots: {page}")
+            echo(f"page and plots: {page}")
     for complaint in undrawn:
-        typer.echo(f"railquake: {complaint}", err=True)
+        echo(f"railquake: {complaint}", err=True)
     if not green:
         raise typer.Exit(NOT_GREEN)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from railquake.fragility.outcomes import FINISHED, outcome
 from railquake.fragility.pelicun import write_csv
 from railquake.fragility.probit import Array
 from railquake.measures import intensities
+from railquake.messages import shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,7 +47,7 @@ class Fragility:
     runs, events, records : int
         That the fit rests on; records is 0 if runs are taken as independent.
     left_out : int
-        Runs without a positive measure.
+        Runs without a positive measure, or of which nobody knows the outcome.
     log_likelihood : float
         At the fit, without penalty.
     flags : tuple of str
@@ -111,7 +113,8 @@ class Fragility:
         values : array_like, shape (n,)
             The measure; runs where it is not positive and finite are left out.
         reached : array_like of bool, shape (n,)
-            Whether the outcome was reached.
+            Whether the outcome was reached: booleans, or 0 and 1.  Missing ones (None, NaN, NA)
+            are left out and counted.
         records : array_like, shape (n,), optional
             Which runs belong together, such as the records' names.
         event, measure : str
@@ -129,11 +132,12 @@ class Fragility:
         Raises
         ------
         InputError
-            If there are fewer than two different values to fit to, or the lengths differ.
+            If there are fewer than two different values to fit to, the lengths differ, or an
+            outcome is neither true nor false.
         """
         x, y, groups = _checked(values, reached, records, confidence)
-        known = np.isfinite(x) & (x > 0.0)
-        x, y = x[known], y[known]
+        known = np.isfinite(x) & (x > 0.0) & np.isfinite(y)
+        x, y = x[known], y[known] == 1.0
         labels = np.arange(x.size) if groups is None else _numbered(groups[known])
         if np.unique(x).size < 2:
             raise InputError(
@@ -342,9 +346,9 @@ def _curve(x: Array, ln_theta: Any, beta: Any) -> Array:
 
 def _checked(values: Any, reached: Any, records: Any, confidence: float) -> tuple[Any, Any, Any]:
     """Arrays of the same length."""
-    x = np.asarray(values, dtype=float)
-    y = np.asarray(reached, dtype=bool)
-    groups = None if records is None else np.asarray(records)
+    x = _measures(values)
+    y = _outcomes(reached)
+    groups = None if records is None else _records(records)
     if x.ndim != 1 or y.shape != x.shape or (groups is not None and groups.shape != x.shape):
         raise InputError(
             f"fragility: values, outcomes and records must be as many, found {x.size}, "
@@ -353,6 +357,75 @@ def _checked(values: Any, reached: Any, records: Any, confidence: float) -> tupl
     if not 0.0 < confidence < 1.0:
         raise InputError(f"fragility: confidence must lie between 0 and 1, found {confidence}")
     return x, y, groups
+
+
+def _array(values: Any, what: str) -> Any:
+    try:
+        return np.asarray(values)
+    except ValueError:
+        raise InputError(f"fragility: {what} are no plain list, one for each run") from None
+
+
+def _records(records: Any) -> Any:
+    groups = _array(records, "records")
+    if any(map(_is_missing, groups.flat)):
+        raise InputError(
+            "fragility: some runs have no record; name one for each, or give no records at all"
+        )
+    try:
+        np.unique(groups)
+    except TypeError:
+        raise InputError("fragility: records must all be texts or all be numbers") from None
+    return groups
+
+
+def _measures(values: Any) -> Array:
+    """Measures as numbers; NaN where they are missing."""
+    items = _array(values, "measures")
+    if items.dtype.kind in "fiu":
+        return items.astype(float)
+    found = np.full(items.shape, np.nan)
+    for at, item in np.ndenumerate(items):
+        if _is_missing(item):
+            continue
+        if isinstance(item, bool | np.bool_) or not _is_plain(item):
+            raise InputError(f"fragility: the measure must be a number, found {shown(item)}")
+        found[at] = float(item)
+    return found
+
+
+def _outcomes(reached: Any) -> Array:
+    """1 where the outcome was reached, 0 where not, NaN where nobody knows."""
+    items = _array(reached, "outcomes")
+    if items.dtype.kind == "b":
+        return items.astype(float)
+    found = np.full(items.shape, np.nan)
+    for at, item in np.ndenumerate(items):
+        if _is_missing(item):
+            continue
+        # a text is none: "False" would be true
+        if not _is_plain(item) or float(item) not in (0.0, 1.0):
+            raise InputError(
+                "fragility: an outcome must be true or false, or 1 or 0, found "
+                f"{shown(item)}; compare first, such as status == 'derailed'"
+            )
+        found[at] = float(item)
+    return found
+
+
+def _is_plain(item: Any) -> bool:
+    """Whether it is a real number or a boolean; numpy takes its times for whole numbers."""
+    return isinstance(item, bool | np.bool_ | Real) and not isinstance(item, np.timedelta64)
+
+
+def _is_missing(item: Any) -> bool:
+    """None, NaN, and pandas' NA and NaT: what is not equal to itself."""
+    if item is None:
+        return True
+    try:
+        return bool(item != item)
+    except (TypeError, ValueError):  # of NA, nobody knows
+        return True
 
 
 def _numbered(labels: Any) -> Any:

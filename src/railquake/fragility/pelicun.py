@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from railquake.errors import InputError
 from railquake.measures import intensities
+from railquake.messages import csv_cell
 
 __all__ = ["LognormalCurve", "write_csv"]
 
@@ -86,7 +87,8 @@ def write_csv(
             row[f"LS{k + 1}-Theta_0"] = "" if curve is None else f"{curve.theta:.6g}"
             row[f"LS{k + 1}-Theta_1"] = "" if curve is None else f"{curve.beta:.6g}"
             row[f"LS{k + 1}-DamageStateWeights"] = ""
-        rows[identifier.replace("-", ".")] = row  # pelicun splits names at the dash
+        # pelicun splits names at the dash
+        rows[csv_cell(identifier.replace("-", "."))] = row
     table = pd.DataFrame.from_dict(rows, orient="index")
     table.index.name = "ID"
     try:

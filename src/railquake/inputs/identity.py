@@ -8,9 +8,9 @@ import os
 from array import array
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
+from railquake.files import read_file
 from railquake.inputs.marks import File, Label, Samples, holds, marked
 from railquake.inputs.model import InputModel
 from railquake.messages import unreadable
@@ -99,11 +99,11 @@ def _file_hash(path: str) -> str:
     try:
         found = os.stat(path)
         return _hash_of(path, found.st_mtime_ns, found.st_size)
-    except OSError as error:
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
         raise unreadable(path, error) from error
 
 
 @lru_cache(maxsize=4096)
 def _hash_of(path: str, changed: int, size: int) -> str:
     """Hash of a file's content, read again when its time or size has changed."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    return hashlib.sha256(read_file(path)).hexdigest()

@@ -101,7 +101,7 @@ class InputModel(BaseModel):
             raise PydanticCustomError(
                 "table", "must be a table, found {found}", {"found": toml_type(data)}
             )
-        data = cls._normalised(dict(data))
+        data = cls._normalised({key: _plain(value) for key, value in data.items()})
         known = (*cls.model_fields, *cls.added_tables())
         for key in data:
             if key not in known:
@@ -117,6 +117,13 @@ class InputModel(BaseModel):
                 raise PydanticCustomError("missing_key", "missing{advice}",
                                           {"key": key, "advice": advice})  # fmt: skip
         return data
+
+
+def _plain(value: Any) -> Any:
+    """Python's own kind of number for one of numpy's."""
+    if type(value).__module__ == "numpy" and getattr(value, "ndim", None) == 0:
+        return value.item()
+    return value
 
 
 def named_list(key: str, tables: Mapping[str, Any]) -> list[Any]:
@@ -177,6 +184,11 @@ def _reason(error: Mapping[str, Any]) -> str:
         return f"must be {context['expected'].replace(chr(39), chr(34))}, found {found}"
     if kind == "value_error":
         return str(context["error"])
+    if kind == "string_unicode":
+        return (
+            f"must be a text in UTF-8, found {found}; rename the file, or set a locale with UTF-8, "
+            "such as LC_ALL=C.UTF-8"
+        )
     if kind == "string_type":
         return f"must be a text, found {found}"
     if kind == "string_pattern_mismatch" or kind == "string_too_short":

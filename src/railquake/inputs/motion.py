@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -35,6 +35,9 @@ def _synthetic_in_si(table: Any) -> dict[str, Any] | None:
         where, _, reason = str(error).partition(": ")
         raise inconsistent(reason, where.partition(".")[2] or None) from None
     return {key: value for key, value in parameters.items() if value is not None}
+
+
+SCALED_BY_ZERO = "must not be 0, which leaves no motion; write the factor that is meant"
 
 
 class Motion(InputModel):
@@ -86,7 +89,7 @@ class Motion(InputModel):
         PositiveTime | None, Field(description="Time step, where the file does not say [s]")
     ] = None
     allow_high_pga: Annotated[
-        Flag, Field(description="Whether a peak above 3 g is taken as it stands")
+        Flag, Field(description="Whether a peak above 3 g is meant, in the file and after scale")
     ] = False
 
     @model_validator(mode="after")
@@ -103,6 +106,8 @@ class Motion(InputModel):
         samples = (self.acceleration, self.vertical_acceleration)
         if self.dt is None and any(values is not None for values in samples):
             raise inconsistent('is needed with samples; write e.g. dt = "0.01 s"', "dt")
+        if self.scale == 0.0:
+            raise inconsistent(SCALED_BY_ZERO, "scale")
         return self
 
     def lateral_motion(self) -> GroundMotion:
@@ -116,7 +121,8 @@ class Motion(InputModel):
         Raises
         ------
         InputError
-            If the record's file cannot be used.
+            If the record's file cannot be used, or what `scale` makes of it is no motion of the
+            ground: see `scaled_motion`.
         """
         if self.record is not None:
             made = self._read(self.record, self.channel)
@@ -125,7 +131,7 @@ class Motion(InputModel):
         else:
             assert self.acceleration is not None  # by the validator above
             made = motion_of_samples(self.name or "samples", self.dt, self.acceleration)
-        return _scaled(made, self.scale)
+        return scaled_motion(made, self.scale, self.allow_high_pga)
 
     def vertical_motion(self) -> GroundMotion | None:
         """Read the vertical component and scale it.
@@ -138,7 +144,7 @@ class Motion(InputModel):
         Raises
         ------
         InputError
-            If its file cannot be used.
+            If its file cannot be used; see `lateral_motion`.
         """
         if self.vertical_acceleration is not None:
             name = f"{self.name or 'samples'} vertical"
@@ -147,7 +153,7 @@ class Motion(InputModel):
             made = self._read(self.vertical, self.vertical_channel)
         else:
             return None
-        return _scaled(made, abs(self.scale))
+        return scaled_motion(made, abs(self.scale), self.allow_high_pga)
 
     def _read(self, path: str, channel: int | str | None) -> GroundMotion:
         try:
@@ -201,8 +207,37 @@ def motion_of_samples(name: str, dt: float | None, samples: Sequence[float]) -> 
     return GroundMotion(name, dt, np.array(samples, dtype=np.float64))
 
 
-def _scaled(motion: GroundMotion, factor: float) -> GroundMotion:
+def scaled_motion(motion: GroundMotion, factor: float, allow_high_pga: bool) -> GroundMotion:
+    """A motion times a factor, if that is still a motion of the ground.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+    factor : float
+        Negative mirrors it.
+    allow_high_pga : bool
+        Whether a peak above 3 g is meant.
+
+    Raises
+    ------
+    InputError
+        If the factor is zero, or the peak is above 3 g without consent, or above 100 g.
+    """
+    from railquake.inputs.ground_motion.read import PLAUSIBLE_PGA, POSSIBLE_PGA
+    from railquake.measures import STANDARD_GRAVITY
+
     if factor == 0.0:
-        return replace(motion, acceleration=0.0 * motion.acceleration)
+        raise InputError(f"motion '{motion.name}': scale {SCALED_BY_ZERO}")
+    limit = POSSIBLE_PGA if allow_high_pga else PLAUSIBLE_PGA
+    peak = abs(factor) * motion.pga
+    if not peak <= limit * (1.0 + 1e-12):
+        if allow_high_pga or peak > POSSIBLE_PGA:
+            limit, remedy = POSSIBLE_PGA, "lower it"
+        else:
+            remedy = "lower it, or say motion.allow_high_pga = true if it is meant"
+        raise InputError(
+            f"motion '{motion.name}': PGA is {peak / STANDARD_GRAVITY:.4g} g with scale = "
+            f"{factor:g}, over {limit / STANDARD_GRAVITY:g} g; {remedy}"
+        )
     scaled = motion.scaled(abs(factor))
     return scaled if factor > 0.0 else scaled.mirrored()

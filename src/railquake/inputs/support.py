@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 from pydantic import ConfigDict, Field
 
 from railquake.errors import InputError
+from railquake.files import read_file
 from railquake.inputs.hinge import BoucWenHinge, model_of, table_of
 from railquake.inputs.layers import FromPreset
 from railquake.inputs.marks import File, KnownLaw, Label
@@ -24,6 +26,7 @@ from railquake.inputs.units import (
     PositiveRollInertia,
     PositiveSecondMomentOfArea,
     Quantity,
+    number_of,
 )
 from railquake.laws import HINGE_LAWS
 from railquake.messages import did_you_mean, shown, toml_type, unreadable
@@ -263,12 +266,12 @@ def read_track_motion(path: str | Path) -> TrackMotion:
 
     known = ("t_s", "y_m", "z_m", "roll_rad")
     try:
-        with Path(path).open(encoding="utf-8-sig", newline="") as file:
-            lines = [
-                (number, [cell.strip() for cell in row])
-                for number, row in enumerate(csv.reader(file), start=1)
-                if any(cell.strip() for cell in row)
-            ]
+        text = read_file(path).decode("utf-8-sig")
+        lines = [
+            (number, [cell.strip() for cell in row])
+            for number, row in enumerate(csv.reader(io.StringIO(text, newline="")), start=1)
+            if any(cell.strip() for cell in row)
+        ]
     except OSError as error:
         raise unreadable(path, error) from error
     except (UnicodeDecodeError, csv.Error) as error:
@@ -285,10 +288,9 @@ def read_track_motion(path: str | Path) -> TrackMotion:
             raise InputError(
                 f"{path}, line {number}: {len(cells)} values for {len(header)} columns"
             )
-        try:
-            values = [float(cell) for cell in cells]
-        except ValueError:
-            raise InputError(f"{path}, line {number}: holds something that is no number") from None
+        values = [value for value in map(number_of, cells) if value is not None]
+        if len(values) < len(cells):
+            raise InputError(f"{path}, line {number}: holds something that is no number")
         if not all(math.isfinite(value) for value in values):
             raise InputError(f"{path}, line {number}: holds a value that is not finite")
         rows.append(values)

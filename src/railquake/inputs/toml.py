@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
+from railquake.files import read_file
 from railquake.messages import unreadable
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -38,7 +39,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         Naming the file, and the line where it is not TOML.
     """
     try:
-        return tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
+        return tomllib.loads(read_file(path).decode("utf-8-sig"))
     except OSError as error:
         raise unreadable(path, error) from error
     except UnicodeDecodeError as error:

@@ -61,6 +61,8 @@ galileo = 0.01 * meter / second ** 2 = Gal = gal
 hertz = 1 / second = Hz
 newton = kilogram * meter / second ** 2 = N
 newton_meter = newton * meter = Nm
+kilogram_force = 9.80665 * newton = kgf
+tonne_force = 9806.65 * newton = tf
 pound_force = 4.4482216152605 * newton = lbf
 kip = 4448.2216152605 * newton = kips
 slug = 14.593902937206364 * kilogram
@@ -120,9 +122,32 @@ DIMENSIONS: Mapping[str, Dimension] = {
 }
 
 # Signs, digits, a decimal point and an exponent; what follows is the unit.
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)?\s*", re.DOTALL)
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)\s*(\S.*?)?\s*", re.DOTALL)
 _UNIT_TEXT = re.compile(r"[A-Za-zµμ°%_0 1-9*/^.()·²³⁴-]{1,60}")
 _SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3", "⁴": "^4", "·": " "})
+
+
+_PLAIN_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?", re.ASCII)
+_NOT_FINITE = ("nan", "inf", "infinity")
+
+
+def number_of(text: str) -> float | None:
+    """The number that a cell of a file holds; None where it holds none.
+
+    Parameters
+    ----------
+    text : str
+        Also with Fortran's exponent, ``1.5D-03``; ``nan`` and ``inf`` are numbers for the caller
+        to refuse.  What Python alone reads (``1_0``, digits of other scripts) is none.
+    """
+    plain = text.strip()
+    if plain.lower().lstrip("+-") in _NOT_FINITE:
+        return float(plain)
+    return float(_with_e(plain)) if _PLAIN_NUMBER.fullmatch(plain) else None
+
+
+def _with_e(number: str) -> str:
+    return number.replace("d", "e").replace("D", "e")
 
 
 class _QuantityError(ValueError):
@@ -187,7 +212,7 @@ def _from_text(text: str, dimension: Dimension) -> float:
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise _QuantityError(f"{wanted}, found {found}; {remedy}")
-    number, unit = float(match[1]), match[2] or ""
+    number, unit = float(_with_e(match[1])), match[2] or ""
     if not unit and dimension.si_unit:
         raise _QuantityError(
             f"{wanted}, found {found}, a text without a unit; {remedy},"

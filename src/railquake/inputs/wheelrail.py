@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -24,6 +26,9 @@ from railquake.laws import CREEP_LAWS, RESTITUTION_LAWS
 
 if TYPE_CHECKING:
     from railquake.inputs.profile import Profile
+
+LEAST_LEAN = 0.0125
+"""Of a rail's head away from the track's middle that is spoken of: half of the usual 1:40 [rad]."""
 
 ProfilePoint = tuple[Number, Number]
 
@@ -256,6 +261,23 @@ class WheelRail(FromPreset):
         """
         return self.rail.profile("rail", f"{self.name} rail")
 
+    def doubts(self) -> tuple[str, ...]:
+        """Sentences on what looks wrong with the profiles, though it can be computed with.
+
+        Raises
+        ------
+        InputError
+            If there is no such rail.
+        """
+        lean = _outward_lean(self.rail, _stamp(self.rail.file))
+        if lean < LEAST_LEAN:
+            return ()
+        which = self.rail.file or f"{self.name} rail"
+        return (
+            f"the rail {which} leans away from the track's middle by {1e3 * lean:.3g} mrad, and "
+            "rails are canted towards it: y must point outward from the track (mirror y)",
+        )
+
     def rail_half_distance(self, rail: Profile | None = None) -> float:
         """Distance of the rail profile's origin from the track's centre [m].
 
@@ -281,3 +303,19 @@ class WheelRail(FromPreset):
         assert self.gauge is not None  # one of the two is there, by the validator above
         rail = self.rail_profile() if rail is None else rail
         return 0.5 * self.gauge - face_offset(rail, self.gauge_height)
+
+
+def _stamp(path: str | None) -> tuple[int, int]:
+    """When a file was changed, and its size: what is remembered of it holds as long as these."""
+    try:
+        found = os.stat(path or "")
+    except (OSError, ValueError):
+        return 0, 0  # reading it says what is wrong
+    return found.st_mtime_ns, found.st_size
+
+
+@lru_cache(maxsize=64)
+def _outward_lean(rail: ProfileSpec, stamp: tuple[int, int]) -> float:
+    from railquake.inputs.profile import outward_lean
+
+    return outward_lean(rail.profile("rail", "rail"))

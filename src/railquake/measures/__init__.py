@@ -325,7 +325,9 @@ MEASURES: tuple[Measure, ...] = (
     ),
     Measure(
         "versions", Kind.RUN, "", "versions", "versions",
-        value=str, meaning="of railquake, Python, NumPy, SciPy, Numba", place=WorkedOut("versions"),
+        value=str,
+        meaning="of railquake, Python, NumPy, SciPy, Numba, llvmlite; a hash of the physics",
+        place=WorkedOut("versions"),
     ),
 )  # fmt: skip
 """All measures, in the order of a table's columns."""

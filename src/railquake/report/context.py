@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shlex
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
 from railquake.findings import Evidence, finished, gather
+from railquake.messages import shell_word
 from railquake.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 from railquake.report.older import completed
 
@@ -94,11 +94,18 @@ class Context:
         The folder as it stands in commands.
     notify : callable
         Called with a line before something that takes long.
+    records : str, optional
+        The folder of the records, where commands must name it.
     """
 
     def __init__(
-        self, results: StudyResults, shown_folder: str, notify: Callable[[str], None]
+        self,
+        results: StudyResults,
+        shown_folder: str,
+        notify: Callable[[str], None],
+        records: str | None = None,
     ) -> None:
+        self.records = records
         self.results = results
         self.shown_folder = shown_folder
         self.notify = notify
@@ -168,9 +175,13 @@ class Context:
     @property
     def command_head(self) -> str:
         """What stands before the row's number."""
-        return f"railquake rerun {shlex.quote(self.shown_folder)}"
+        return f"railquake rerun {shell_word(self.shown_folder)}"
 
-    command_tail = "--out result"
+    @property
+    def command_tail(self) -> str:
+        """What stands behind the row's number."""
+        where = "" if self.records is None else f" --records {shell_word(self.records)}"
+        return f"--out result{where}"
 
     def words(self, rows: pd.DataFrame) -> list[str]:
         """What to say of each run on hover."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from railquake.messages import csv_cell
 from railquake.plots.style import BLACK, FAINT, blank, dress, heading, plain, save
 from railquake.report.chart import Band, Chart, Layer, Line, Panel, Points, Rule, limits
 
@@ -167,8 +168,8 @@ def csv_text(chart: Chart) -> str:
         for layer in panel.layers:
             if isinstance(layer, Rule):
                 continue
-            name = [panel.title, layer.label]
-            labels = [panel.x_label, panel.y_label]
+            name = [csv_cell(panel.title), csv_cell(layer.label)]
+            labels = [csv_cell(panel.x_label), csv_cell(panel.y_label)]
             if isinstance(layer, Band):
                 for x, low, high in zip(layer.x, layer.low, layer.high, strict=True):
                     writer.writerow([*name, "band", *labels, _g(x), _g(low), _g(high), "", ""])
@@ -179,7 +180,9 @@ def csv_text(chart: Chart) -> str:
                 for x, y, row, text in zip(
                     layer.x, layer.y, np.asarray(layer.rows), layer.texts, strict=True
                 ):
-                    writer.writerow([*name, "point", *labels, _g(x), _g(y), "", int(row), text])
+                    writer.writerow(
+                        [*name, "point", *labels, _g(x), _g(y), "", int(row), csv_cell(text)]
+                    )
     return out.getvalue()
 
 

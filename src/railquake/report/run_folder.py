@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
 from collections.abc import Mapping
@@ -11,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
 from railquake.files import whole_folder
-from railquake.messages import reason
+from railquake.messages import csv_cell, reason
 from railquake.run.assess import assess
 
 if TYPE_CHECKING:
+    import xarray
+
     from railquake.run.response import Response
 
 __all__ = ["json_text", "write_run"]
@@ -70,7 +73,7 @@ def write_run(response: Response, folder: Path, *, pictures: bool = True) -> dic
         with whole_folder(folder, ours=FILES, last=SUMMARY) as part:
             (part / "case.toml").write_text(response.system.scenario.to_toml(), encoding="utf-8")
             _write_events(response, part / "events.csv")
-            response.history.to_netcdf(part / "history.nc", engine="h5netcdf")
+            (part / "history.nc").write_bytes(_netcdf(response.history))
             if pictures:
                 from railquake.plots import write_pictures
 
@@ -81,10 +84,21 @@ def write_run(response: Response, folder: Path, *, pictures: bool = True) -> dic
     return row
 
 
+def _netcdf(history: xarray.Dataset) -> bytes:
+    """The bytes of a NetCDF file, made in memory: HDF5 ends the process where a disk is full."""
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
+    buffer = io.BytesIO()
+    with h5netcdf.File(buffer, mode="w") as file:
+        history.dump_to_store(H5NetCDFStore(file))
+    return buffer.getvalue()
+
+
 def _write_events(response: Response, path: Path) -> None:
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["event", "begin_s", "end_s"])
         for event in response.events:
             end = "" if event.end_s != event.end_s else f"{event.end_s:.6g}"
-            writer.writerow([event.name, f"{event.begin_s:.6g}", end])
+            writer.writerow([csv_cell(event.name), f"{event.begin_s:.6g}", end])

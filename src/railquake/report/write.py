@@ -42,6 +42,7 @@ def write_report(
     out: str | Path | None = None,
     *,
     hazard: str | None = None,
+    records: str | Path | None = None,
     notify: Callable[[str], None] = _silent,
 ) -> Path:
     """Write the report of a study.
@@ -56,6 +57,8 @@ def write_report(
     hazard : str, optional
         Uniform hazard spectra to hold the suite against: a built-in name or a CSV file.  Berkeley's
         for the built-in suites by default.
+    records : str or Path, optional
+        The folder in which the records are now, if they are not where they were.
     notify : callable
         Called with a line before something that takes long.
 
@@ -72,7 +75,12 @@ def write_report(
     """
     from railquake.study import open_results
 
-    context = Context(open_results(folder), os.fspath(folder), notify)
+    context = Context(
+        open_results(folder, records=records),
+        os.fspath(folder),
+        notify,
+        None if records is None else os.fspath(records),
+    )
     page = Path(out) if out is not None else Path(folder) / PAGE
     if page.is_dir():
         raise InputError(f"--out {page}: is a folder; name a file, such as {page / PAGE}")

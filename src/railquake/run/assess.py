@@ -15,6 +15,7 @@ import numpy as np
 from railquake import measures
 from railquake.inputs.ground_motion import jma_intensity
 from railquake.inputs.support import Pier
+from railquake.march.compiler import source_hash
 from railquake.march.rows_constant import STAGES
 from railquake.measures import (
     AttributeOf,
@@ -33,7 +34,7 @@ from railquake.run.doubts import doubts
 if TYPE_CHECKING:
     from railquake.run.response import Response
 
-__all__ = ["assess", "versions"]
+__all__ = ["assess", "physics", "versions"]
 
 
 def assess(response: Response) -> dict[str, Any]:
@@ -95,14 +96,20 @@ def _time(at: float) -> float | None:
 
 
 def versions() -> dict[str, str]:
-    """Versions of all that decides the numbers."""
+    """Versions of all that decides the numbers, and under ``physics`` a hash of its source."""
     return dict(_versions())
+
+
+def physics() -> str:
+    """What decides the numbers of a scenario: a hash of the physics, and the compiler's version."""
+    known = _versions()
+    return f"{known['physics']} with Numba {known['numba']} and llvmlite {known['llvmlite']}"
 
 
 @cache
 def _versions() -> dict[str, str]:
-    found = {"python": platform.python_version()}
-    for package in ("railquake", "numpy", "scipy", "numba"):
+    found = {"physics": source_hash(), "python": platform.python_version()}
+    for package in ("railquake", "numpy", "scipy", "numba", "llvmlite"):
         try:
             found[package] = installed_version(package)
         except PackageNotFoundError:
@@ -198,7 +205,9 @@ _WORKED_OUT: Mapping[str, Callable[[Response], Any]] = {
     "time_step_error": _time_step_error,
     "track_intensity": _track_intensity,
     "uplift_ratio": _uplift_ratio,
-    "warnings": lambda response: "; ".join(doubts(response)) or None,
+    "warnings": lambda response: (
+        "; ".join((*doubts(response), *response.system.scenario.wheelrail.doubts())) or None
+    ),
     "versions": lambda _: versions(),
     "wheel_unloading": _wheel_unloading,
     "stop_use": _stop_use,

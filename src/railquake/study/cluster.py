@@ -13,6 +13,8 @@ from urllib.parse import urlsplit
 
 from railquake.errors import InputError
 from railquake.messages import first_line, reason
+from railquake.run.assess import physics
+from railquake.study.batches import refuse_other_physics
 
 __all__ = ["cluster_executor"]
 
@@ -34,7 +36,7 @@ def cluster_executor(address: str, say: Callable[[str], None]) -> Iterator[tuple
     Raises
     ------
     InputError
-        If Dask is not installed or the scheduler does not answer.
+        If Dask is not installed, the scheduler does not answer, or a worker has other physics.
     """
     try:
         parts = urlsplit(address)
@@ -65,12 +67,22 @@ def cluster_executor(address: str, say: Callable[[str], None]) -> Iterator[tuple
         if not client.nthreads():
             say(f"no worker has joined {address} yet; waiting for one")
             client.wait_for_workers(1)
+        _refuse_other_physics(client)
         threads = sum(client.nthreads().values())
         executor = client.get_executor(pure=False, retries=RETRIES)
         try:
             yield executor, threads
         finally:
             executor.shutdown(wait=False)
+
+
+def _refuse_other_physics(client: Any) -> None:
+    """Refuse a worker that would give other numbers; those that join later are asked by batch."""
+    found = client.run(physics, on_error="return")
+    older = "that this version of railquake cannot ask for"  # it has no such function
+    refuse_other_physics(
+        {name: told if isinstance(told, str) else older for name, told in found.items()}, physics()
+    )
 
 
 def _connected(connect: Any, address: str) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ from railquake.inputs.model import validated
 from railquake.inputs.motion import Motion
 from railquake.inputs.scenario import Scenario, scenario_from_dict
 from railquake.memory import Bounded
-from railquake.study.axes import Axis, DistributionAxis, sampled
+from railquake.study.axes import Axis, DistributionAxis, VariantAxis, sampled
 from railquake.suite import Suite, SuiteMember
 
 if TYPE_CHECKING:
@@ -92,7 +92,12 @@ class Design:
         motion = base.pop("motion", None)
         self._base = base
         if study.suite is not None:
-            self.members: tuple[SuiteMember, ...] = study.suite.members
+            # what is meant by the base case's own motion holds for those in its place
+            meant = isinstance(motion, Mapping) and motion.get("allow_high_pga") is True
+            self.members: tuple[SuiteMember, ...] = tuple(
+                replace(one, motion={**one.motion, "allow_high_pga": True}) if meant else one
+                for one in study.suite.members
+            )
         else:
             table = {} if motion is None else dict(motion)
             factor = table.pop("scale", 1.0)
@@ -305,15 +310,51 @@ class Design:
             self.scenario(self.point(row * inner))
         rows_of_member = self.size // len(self.members)
         for member in range(len(self.members)):
-            scenario = self.scenario(self.point(member * rows_of_member))
-            try:
-                scenario.ground_motion()
-                scenario.vertical_motion()
-            except InputError as error:
-                if self.study.suite is None:
-                    raise
-                name = self.members[member].name
-                raise InputError(f"{self.where}: suite: {name}: {error}") from None
+            for row in self._extremes(
+                range(member * rows_of_member, (member + 1) * rows_of_member)
+            ):
+                self._check_motions(self.point(row))
+
+    def _extremes(self, rows: range) -> list[int]:
+        """A motion's first row, and those with its largest factors.
+
+        The first values of the other axes stand beside each level and each factor of an axis.
+        """
+        where = [k for k, axis in enumerate(self.grid) if _scales(axis)]
+        inner = [self.samples] * len(self.grid)
+        for k in reversed(range(len(self.grid) - 1)):
+            inner[k] = inner[k + 1] * self.grid[k + 1].size
+        of_level = len(rows) // len(self.levels)
+        offsets = [
+            sum(pick * inner[k] for k, pick in zip(where, picks, strict=True))
+            for picks in itertools.product(*(range(self.grid[k].size) for k in where))
+        ]
+        if any(axis.path == "motion.scale" for axis in self.drawn):
+            offsets = [at + sample for at in offsets for sample in range(self.samples)]
+        tried = [
+            rows.start + level * of_level + at
+            for level in range(len(self.levels))
+            for at in offsets[:_MOST_CHECKED]
+        ]
+        scales = [self.point(row).scale for row in tried]
+        chosen = {rows.start, tried[max(range(len(tried)), key=lambda k: abs(scales[k]))]}
+        return sorted(chosen | {tried[k] for k, scale in enumerate(scales) if scale == 0.0})
+
+    def _check_motions(self, point: Point) -> None:
+        scenario = self.scenario(point)
+        try:
+            scenario.ground_motion()
+            scenario.vertical_motion()
+        except InputError as error:
+            if self.study.suite is None:
+                raise InputError(f"{self.where}: row {point.row}: {error}") from None
+            raise InputError(f"{self.where}: suite: {point.record}: {error}") from None
+
+
+def _scales(axis: Axis) -> bool:
+    """Whether an axis changes the factor on the motion."""
+    paths = axis.paths if isinstance(axis, VariantAxis) else {axis.path}
+    return "motion.scale" in paths or "motion.allow_high_pga" in paths
 
 
 def _is_motion(path: str) -> bool:

@@ -20,7 +20,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from railquake.errors import InputError
+from railquake.march.compiler.cache import check_compiler
 from railquake.messages import first_line
+from railquake.run.assess import physics
 from railquake.run.many import (
     Device,
     choose_time_step,
@@ -31,7 +33,7 @@ from railquake.run.many import (
 )
 from railquake.study.batches import Batch, Ended, kept_design, run_batch
 from railquake.study.design import Design
-from railquake.study.folder import ResultsFolder, no_note
+from railquake.study.folder import ResultsFolder, made_by_this, no_note
 from railquake.study.plan import Work, hardest, kernel_key, parse_shard, plan
 from railquake.study.table import table_row, table_schema, to_pandas
 
@@ -97,6 +99,7 @@ def run_study(
             "study: device cuda is the GPU of this process and goes with neither an executor nor a "
             "scheduler; give each GPU a shard"
         )
+    check_compiler()
     make_lanes = lanes_on(device)
     study = study.with_suite(records)
     design = Design(study)
@@ -106,7 +109,7 @@ def run_study(
     design.check()
     with _executor(executor, scheduler, jobs, say) as (pool, workers, stop):
         folder = ResultsFolder(out)
-        folder.prepare(study, say)
+        folder.prepare(study, say, made_by_this())
         step = _time_step(design, folder, jobs, say)
         if step is not None:
             design = Design(study, step)
@@ -119,7 +122,7 @@ def run_study(
                 _run_on_gpu(design, work, keeper, jobs)
             else:
                 key = f"{out.resolve()}:{os.getpid()}:{time.monotonic_ns()}"
-                batches = [Batch(key, study, step, batch) for batch in work.batches]
+                batches = [Batch(key, study, step, batch, physics()) for batch in work.batches]
                 with kept_design(key, design):
                     _run_all(pool, workers, stop, batches, keeper)
     whole = folder.write_table(schema, dict(zip(rows, work.hashes, strict=True)))
@@ -183,8 +186,11 @@ def _compile(design: Design, work: Work, say: Callable[[str], None], make_lanes:
         if scenario.solver.contact == "grid" or kernel_key(scenario) in seen:
             continue
         seen.add(kernel_key(scenario))
-        with suppress(InputError):  # the run will say so
+        try:
             system = assemble(scenario)
+        except Exception:  # the row fails later, and says why
+            continue
+        with suppress(InputError):  # the run will say so
             group = group_of(system)
             if group in seen:
                 continue
@@ -245,6 +251,7 @@ def _wind_down(running: set[Future[Ended]], stop: threading.Event | None, keeper
         future.cancel()
     if stop is not None:
         stop.set()
+        keeper.flush()  # before what may take too long for whoever stopped it
         wait(running)  # of other machines, nobody knows when they hear of it
     for future in running:
         if future.done() and not future.cancelled() and future.exception() is None:
@@ -278,7 +285,7 @@ class _Keeper:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._flush()
+        self.flush()
 
     def take(self, results: Ended) -> None:
         """Take the measures of some rows; those of the same scenario have the same."""
@@ -297,7 +304,7 @@ class _Keeper:
     def look_up(self) -> None:
         """Write a part, if it is time, and say how far the study is."""
         if time.monotonic() - self.flushed > FLUSH_S or len(self.rows) > FLUSH_ROWS:
-            self._flush()
+            self.flush()
         if self.report is not None:
             self.report(self._progress())
 
@@ -307,7 +314,8 @@ class _Keeper:
         remaining = passed * self.left / worked if worked > 0.0 else None
         return StudyProgress(self.former + self.ended, self.total, self.ended / passed, remaining)
 
-    def _flush(self) -> None:
+    def flush(self) -> None:
+        """Write a part of what has finished."""
         if not self.rows:
             return
         rows, self.rows = self.rows, []

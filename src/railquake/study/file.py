@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from numbers import Real
 from pathlib import Path
 from typing import Any, Self
 
@@ -19,12 +21,15 @@ from railquake.inputs.toml import is_path, read_toml
 from railquake.messages import did_you_mean, refuse_unknown, shown, toml_type
 from railquake.study.axes import VariantAxis
 from railquake.study.distributions import Sampling
+from railquake.study.moved import FOLDER
 from railquake.study.parsing import parse_axes, parse_sampling
 from railquake.suite import SUITES, Suite, SuiteMember, load_suite
 
-__all__ = ["AUTO", "FILE", "StudyInputs"]
+__all__ = ["AUTO", "FILE", "MADE_BY", "StudyInputs"]
 
 AUTO = "auto"  # a time step that is chosen for the study
+# What a study's folder notes of the program that made its rows, in words.
+MADE_BY = {"railquake": "railquake", "physics": "physics"}
 _SECTIONS = ("base", "suite", "axes", "sampling")
 _CASE = Place((Scenario,))
 # An axis' name is the path of an input: what excludes each other in a case does so here, too.
@@ -94,7 +99,9 @@ class StudyInputs:
         InputError
             Naming the field, what was found and what to write.
         """
-        refuse_unknown((key for key in tables if key != "railquake"), _SECTIONS, f"{where}: ")
+        refuse_unknown(
+            (key for key in tables if key not in (*MADE_BY, FOLDER)), _SECTIONS, f"{where}: "
+        )
         if "base" not in tables:
             raise InputError(
                 f'{where}: base: missing; write e.g. [base] case = "case.toml", or the tables of a '
@@ -221,11 +228,17 @@ def _levels(levels: Any, where: str) -> dict[str, float]:
         )
     found: dict[str, float] = {}
     for name, factor in levels.items():
-        number = isinstance(factor, int | float) and not isinstance(factor, bool)
-        if not number or not (math.isfinite(factor) and factor > 0.0):
-            raise InputError(f"{where}.{name}: must be a number over zero, found {shown(factor)}")
-        found[str(name)] = float(factor)
+        found[str(name)] = _factor(factor, f"{where}.{name}")
     return found
+
+
+def _factor(value: Any, where: str) -> float:
+    """A factor on motions."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        with suppress(OverflowError):  # a whole number of hundreds of digits
+            if 0.0 < float(value) < math.inf:
+                return float(value)
+    raise InputError(f"{where}: must be a number over zero, found {shown(value)}")
 
 
 def _members(items: Any, name: Any, where: str) -> Suite:
@@ -234,13 +247,12 @@ def _members(items: Any, name: Any, where: str) -> Suite:
     members: list[SuiteMember] = []
     for item in items:
         try:
-            member = SuiteMember(
-                str(item["name"]), dict(item["motion"]), float(item["scale_factor"])
-            )
+            name_of, motion, factor = str(item["name"]), dict(item["motion"]), item["scale_factor"]
         except (KeyError, TypeError, ValueError):
             raise InputError(
                 f"{where}.members: each needs name, motion and scale_factor, found "
                 + toml_type(item)
             ) from None
-        members.append(member)
+        factor = _factor(factor, f"{where}.members.{name_of}.scale_factor")
+        members.append(SuiteMember(name_of, motion, factor))
     return Suite(str(name), tuple(members))

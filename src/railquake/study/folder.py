@@ -13,7 +13,11 @@ from railquake.errors import InputError
 from railquake.files import prepare_folder, random_name, set_aside, whole_file
 from railquake.inputs.toml import dumps, read_toml
 from railquake.messages import reason, shown
+from railquake.parts import sweep
+from railquake.run.assess import physics
 from railquake.run.time_step import TimeStep
+from railquake.study.file import MADE_BY
+from railquake.study.moved import FOLDER, without_folders
 from railquake.study.table import distinct, in_columns
 
 if TYPE_CHECKING:
@@ -21,7 +25,14 @@ if TYPE_CHECKING:
 
     from railquake.study.file import StudyInputs
 
-__all__ = ["STUDY_FILE", "TABLE_FILE", "ResultsFolder", "no_note", "read_parquet"]
+__all__ = [
+    "STUDY_FILE",
+    "TABLE_FILE",
+    "ResultsFolder",
+    "made_by_this",
+    "no_note",
+    "read_parquet",
+]
 
 STUDY_FILE = "study.toml"
 TABLE_FILE = "runs.parquet"
@@ -62,19 +73,27 @@ class ResultsFolder:
         self.parts = path / PARTS
         self.kept = 0  # rows of this execution that are on the disk
 
-    def prepare(self, study: StudyInputs, notify: Callable[[str], None]) -> None:
+    def prepare(
+        self, study: StudyInputs, notify: Callable[[str], None], made_by: Mapping[str, str]
+    ) -> None:
         """Make the folder, or make sure that it holds results of this very study.
+
+        Parameters
+        ----------
+        study : StudyInputs
+        notify : callable
+            Called with a line if its rows were made by another version.
+        made_by : mapping
+            What makes the rows; see `made_by_this`.
 
         Raises
         ------
         InputError
             If it holds another study, or something else, or cannot be written.
         """
-        from railquake.version import __version__
-
         prepare_folder(self.path)
         file = self.path / STUDY_FILE
-        tables = {"railquake": __version__, **study.to_dict()}
+        tables = {**made_by, FOLDER: str(self.path.absolute()), **study.to_dict()}
         if file.exists():
             self.compare(tables, notify)
         elif self.path.exists() and any(
@@ -86,10 +105,17 @@ class ResultsFolder:
             )
         try:
             self.parts.mkdir(parents=True, exist_ok=True)
+            for folder in (self.path, self.parts):
+                sweep(folder)  # what an execution that was killed was writing
             if not file.exists():
                 text = "# Written by railquake: the study of this folder.\n" + dumps(tables)
                 with whole_file(file, durable=True) as part:
                     part.write_text(text, encoding="utf-8")
+        except UnicodeEncodeError:
+            raise InputError(
+                f"--out {self.path}: a path of the study is not UTF-8 and cannot be noted in "
+                f"{STUDY_FILE}; rename it, or set a locale with UTF-8, such as LC_ALL=C.UTF-8"
+            ) from None
         except OSError as error:
             raise InputError(f"--out {self.path}: cannot be written: {reason(error)}") from None
 
@@ -103,8 +129,9 @@ class ResultsFolder:
         """
         file = self.path / STUDY_FILE
         old, new = dict(read_toml(file)), dict(tables)
-        made_by = old.pop("railquake", None)
-        version = new.pop("railquake", None)
+        for read in (old, new):
+            read.pop(FOLDER, None)
+        former, now = ({key: table.pop(key, None) for key in MADE_BY} for table in (old, new))
         # written and read once, so that both have the same form
         differences = _differences(old, _as_read(new))
         if differences:
@@ -113,8 +140,14 @@ class ResultsFolder:
                 f"--out {self.path}: holds another study; {'; '.join(differences[:4])}{more}; "
                 "take another folder, or change the study back"
             )
-        if made_by is not None and version is not None and made_by != version:
-            notify(f"rows in {self.path} were made by railquake {made_by}, new ones by {version}")
+        for key, words in MADE_BY.items():
+            if None not in (former[key], now[key]) and former[key] != now[key]:
+                notify(f"rows in {self.path} were made by {words} {former[key]}, new ones by "
+                       f"{now[key]}; for rows of one kind take another folder")  # fmt: skip
+
+    def made_by(self) -> dict[str, str]:
+        """What made its rows, as far as it was noted; see `made_by_this`."""
+        return {k: v for k, v in read_toml(self.path / STUDY_FILE).items() if k in MADE_BY}
 
     def add(self, rows: Sequence[Mapping[str, Any]], schema: pa.Schema) -> None:
         """Keep finished rows: a new part.
@@ -265,6 +298,13 @@ class ResultsFolder:
         return found
 
 
+def made_by_this() -> dict[str, str]:
+    """What makes rows here: the version of railquake, and that of its physics and compiler."""
+    from railquake.version import __version__
+
+    return {"railquake": __version__, "physics": physics()}
+
+
 def no_note(_: str) -> None:
     """Say nothing."""
 
@@ -289,7 +329,9 @@ def _flat(value: Any, path: str = "") -> dict[str, Any]:
 def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
     """What differs between two studies, a phrase each."""
     a, b = _flat(old), _flat(new)
-    a, b = ({k: v for k, v in x.items() if not k.endswith(".name")} for x in (a, b))
+    a, b = (
+        {k: without_folders(k, v) for k, v in x.items() if not k.endswith(".name")} for x in (a, b)
+    )
     found = []
     for key in dict.fromkeys((*a, *b)):
         if key not in b:
@@ -304,4 +346,13 @@ def _differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
 
 
 def _as_listed(tables: Mapping[str, Any]) -> str:
-    return json.dumps({key: value for key, value in tables.items() if key != "base"})
+    return json.dumps(_named({key: value for key, value in tables.items() if key != "base"}))
+
+
+def _named(value: Any, path: str = "") -> Any:
+    """The same with names of files for their paths."""
+    if isinstance(value, Mapping):
+        return {key: _named(item, key) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_named(item, path) for item in value]
+    return without_folders(path, value)

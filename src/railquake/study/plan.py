@@ -7,8 +7,10 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from railquake.assembly import critical_time_step
 from railquake.errors import InputError
 from railquake.march.compiler import lockstep_target
+from railquake.run.many import failed_row
 
 if TYPE_CHECKING:
     from railquake.inputs.scenario import Scenario
@@ -70,9 +72,9 @@ def plan(design: Design, rows: range, done: set[tuple[int, str | None]], workers
         try:
             scenario, key, parts = design.identified(design.point(row))
             length = _steps(scenario)
-        except InputError as error:
+        except Exception as error:  # whatever it is, the other rows shall not suffer
             hashes.append(None)
-            failed[row] = str(error)
+            failed[row] = str(failed_row(error)["error"])
             continue
         hashes.append(key)
         if (row, key) in done:
@@ -150,7 +152,8 @@ def hardest(design: Design) -> list[Scenario]:
             if motion not in velocities:
                 unit = scenario.ground_motion()
                 velocities[motion] = unit.pgv / abs(point.scale) if point.scale else 0.0
-        except InputError:
+            critical_time_step(scenario)
+        except Exception:  # such a row fails later, and says why
             continue
         support = scenario.support
         key = (

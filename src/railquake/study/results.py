@@ -13,6 +13,7 @@ from railquake.inputs.toml import read_toml
 from railquake.messages import no_folder
 from railquake.study.design import Design
 from railquake.study.folder import STUDY_FILE, TABLE_FILE, ResultsFolder, no_note, read_parquet
+from railquake.study.moved import found_again
 from railquake.study.study import Study
 from railquake.study.table import distinct, in_columns, table_schema, to_pandas
 
@@ -100,13 +101,16 @@ class StudyResults:
         return scenario
 
 
-def open_results(folder: str | Path) -> StudyResults:
+def open_results(folder: str | Path, *, records: str | Path | None = None) -> StudyResults:
     """Open the folder of a study.
 
     Parameters
     ----------
     folder : str or Path
         As given to `Study.run`; the study may be unfinished.
+    records : str or Path, optional
+        The folder in which the records are now, if they are not where they were.  What was moved
+        together with the study's folder is found without it.
 
     Returns
     -------
@@ -115,7 +119,8 @@ def open_results(folder: str | Path) -> StudyResults:
     Raises
     ------
     InputError
-        If the folder is not there, is empty, or holds something else.
+        If the folder is not there, is empty, or holds something else; or the folder of the
+        records lacks one.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -124,7 +129,9 @@ def open_results(folder: str | Path) -> StudyResults:
     if not file.exists():
         what = "is empty" if not any(folder.iterdir()) else f"holds no study (no {STUDY_FILE})"
         raise InputError(f"{folder}: {what}; give the folder that railquake study wrote")
-    study = Study.from_dict(read_toml(file), folder, where=str(file))
+    place = None if records is None else Path(records)
+    tables = found_again(read_toml(file), folder.absolute(), place)
+    study = Study.from_dict(tables, folder, where=str(file))
     if not ResultsFolder(folder).names() and not (folder / TABLE_FILE).exists():
         raise InputError(f"{folder}: holds a study without any finished run; run it first")
     return StudyResults(folder, study)
@@ -160,11 +167,12 @@ def merge_results(
         raise InputError("merge: give the folders of the shards")
     target = ResultsFolder(Path(out))
     first = open_results(folders[0])
-    target.prepare(first.study, say)
+    made_by = ResultsFolder(first.folder).made_by()
+    target.prepare(first.study, say, made_by)
     step = ResultsFolder(first.folder).time_step()
     for folder in folders:
         results, source = open_results(folder), ResultsFolder(Path(folder))
-        target.compare(results.study.to_dict(), say)
+        target.compare({**source.made_by(), **results.study.to_dict()}, say)
         if source.time_step() != step:
             raise InputError(f"{folder}: its time step is not that of {folders[0]}; run it again")
         if target.path.resolve() == source.path.resolve():

@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railquake.errors import InputError
+from railquake.files import read_file
 from railquake.inputs.ground_motion import STANDARD_GRAVITY
 from railquake.messages import unreadable
 
@@ -188,7 +189,7 @@ def read_hazard(name_or_path: str | Path) -> Hazard:
             "or give a file, hazard.csv"
         )
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_file(path).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise unreadable(path, error) from None
     return _parsed(path.stem, str(path), text)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import csv
-import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
+from railquake.files import read_file
 from railquake.messages import no_folder, unreadable
 from railquake.suite.model import Suite, SuiteMember
+from railquake.suite.peer import is_search_report, search_rows
+from railquake.suite.rows import Row, positive_number
 
 __all__ = ["Row", "is_file", "read_manifest", "read_rows", "suite_of_rows"]
 
@@ -25,33 +26,6 @@ MOST_ROWS = 100_000
 _RSN = re.compile(r"rsn0*([0-9]+)", re.IGNORECASE)
 
 
-@dataclass(frozen=True)
-class Row:
-    """One row of a manifest.
-
-    Parameters
-    ----------
-    place : str
-        File and line, for messages.
-    file : str
-        As written.
-    scale_factor : float
-        Over zero.
-    cells : dict
-        All cells of the row that are not empty, by column.
-    """
-
-    place: str
-    file: str
-    scale_factor: float
-    cells: dict[str, str] = field(default_factory=dict)
-
-    @property
-    def label(self) -> str:
-        """The row's name, else its file's without folder and ending."""
-        return self.cells.get("name") or Path(self.file).stem
-
-
 def read_manifest(path: Path, records: Path | None) -> Suite:
     """Read a suite's manifest and find its records.
 
@@ -60,7 +34,8 @@ def read_manifest(path: Path, records: Path | None) -> Suite:
     path : Path
         CSV with the columns file and scale_factor.  Optional: name; channel, units and dt, as in
         ``[motion]``; rsn, which the number in the file's name must agree with.  Other columns are
-        left alone, lines that start with # are remarks.
+        left alone, lines that start with # are remarks.  Or PEER's _SearchResults.csv: both
+        horizontal components of each record with its scale factor.
     records : Path or None
         Folder that relative files start from; the manifest's own folder if None.
 
@@ -75,12 +50,13 @@ def read_manifest(path: Path, records: Path | None) -> Suite:
         If the manifest or a record is missing, or a row is wrong: file, line and column.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_file(path).decode("utf-8-sig")
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such manifest of a suite; check the path") from None
     except (OSError, UnicodeDecodeError) as error:
         raise unreadable(path, error) from None
-    return suite_of_rows(path.stem, read_rows(text, str(path)), records or path.parent)
+    rows = (search_rows if is_search_report(text) else read_rows)(text, str(path))
+    return suite_of_rows(path.stem, rows, records or path.parent)
 
 
 def read_rows(text: str, where: str) -> tuple[Row, ...]:
@@ -145,7 +121,7 @@ def _row(cells: dict[str, str], place: str) -> Row:
     file = cells["file"]
     if not file or not file.isprintable():
         raise InputError(f"{place}: file: a record's file is needed, found {file!r}")
-    factor = _number(cells["scale_factor"], f"{place}: scale_factor")
+    factor = positive_number(cells["scale_factor"], f"{place}: scale_factor")
     given = _RSN.search(Path(file).name)
     wanted = cells.get("rsn", "")
     if wanted:
@@ -157,16 +133,6 @@ def _row(cells: dict[str, str], place: str) -> Row:
                 "correct one of them"
             )
     return Row(place, file, factor, {key: text for key, text in cells.items() if key and text})
-
-
-def _number(text: str, what: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        raise InputError(f"{what}: must be a number, found {text!r}") from None
-    if not (math.isfinite(value) and value > 0.0):
-        raise InputError(f"{what}: must be finite and over zero, found {text}")
-    return value
 
 
 def suite_of_rows(
@@ -242,7 +208,7 @@ def _reading(row: Row) -> dict[str, Any]:
     if table.get("channel", "").isdigit():
         table["channel"] = int(table["channel"])
     if "dt" in table:
-        table["dt"] = _number(table["dt"], f"{row.place}: dt")
+        table["dt"] = positive_number(table["dt"], f"{row.place}: dt")
     return table
 
 

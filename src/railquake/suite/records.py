@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import re
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from pathlib import Path
 
 from railquake.errors import InputError
 from railquake.inputs.ground_motion import GroundMotion, read_motion, record_contents
+from railquake.inputs.ground_motion.orientation import vertical_by_name
 from railquake.messages import no_folder, unreadable
 
 __all__ = ["Component", "Skipped", "find_components"]
@@ -22,11 +22,6 @@ VERTICAL = "vertical component"
 COPY = "copy of another"
 ALL_ZERO = "all zero"
 DAMAGED = "damaged or incomplete"
-
-# As agencies mark vertical components in labels, and at the end of a file's name.
-_VERTICAL_LABEL = re.compile(r"\b(?:up|down|dwn|vert\w*|vrt|u-?d|[hbe][hln]z|[vz])\b", re.I)
-_VERTICAL_FILE = re.compile(r"(?:[-_. ](?:up|dwn|down|vert|vrt|ver|ud|v|z)|dwn)$", re.I)
-_VERTICAL_ENDING = re.compile(r"\.(?:ud[12]?|up)", re.I)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +69,8 @@ def find_components(
 
     A file takes part if it is of a record format that `read_motion` knows and says everything
     itself (time step, unit).  Plain columns of numbers are left out: a table of a spectrum looks
-    the same.  So are vertical components, told by the channel's label or the file's name, and
-    components that are there already under another name.
+    the same.  So are vertical components, told by the file's header or, where it does not tell, by
+    the file's name, and components that are there already under another name.
 
     Parameters
     ----------
@@ -146,9 +141,9 @@ def _components(path: Path, file: str) -> list[Component | Skipped]:
         return [Skipped(file, PLAIN_COLUMNS)]
     several = len(contents.channels) > 1
     made: list[Component | Skipped] = []
-    for number, label in contents.channels:
+    for (number, label), vertical in zip(contents.channels, contents.vertical, strict=True):
         channel = (number if number is not None else label) if several else None
-        if _is_vertical(path, label, several):
+        if vertical or (vertical is None and not several and vertical_by_name(path)):
             made.append(Skipped(file, VERTICAL))
             continue
         try:
@@ -156,12 +151,6 @@ def _components(path: Path, file: str) -> list[Component | Skipped]:
         except InputError as error:
             made.append(Skipped(file, DAMAGED, str(error)))
     return made
-
-
-def _is_vertical(path: Path, label: str, several: bool) -> bool:
-    if label and (several or _VERTICAL_LABEL.search(label)):
-        return bool(_VERTICAL_LABEL.search(label))
-    return bool(_VERTICAL_FILE.search(path.stem) or _VERTICAL_ENDING.fullmatch(path.suffix))
 
 
 def _why_not(skipped: list[Skipped]) -> str:

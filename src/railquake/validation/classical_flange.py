@@ -70,6 +70,7 @@ def slide(friction: float, way: float) -> tuple[float, float]:
         "support": "at-grade",
         # the block is left behind to the right, against the rail
         "motion": motion(1e-3, [-40.0] * 5),
+        "allow_high_pga": True,
         "dt": 1e-5,
         "history_step": 1e-4,
     }

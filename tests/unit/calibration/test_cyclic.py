@@ -40,6 +40,9 @@ def refused(path, *arguments, **options):
         ("Displacement [m],Force [N]", (1.0, 1.0)),
         ("disp (inch),load (kip)", (1.0 / 0.0254, 1.0 / 4448.2216152605)),
         ("drift mm, shear MN", (1e3, 1e-6)),
+        ("drift_%,force_kN", (100.0 / LENGTH, 1e-3)),
+        ("drift (percent),force (kgf)", (100.0 / LENGTH, 1.0 / 9.80665)),
+        ("drift [rad],force [tf]", (1.0 / LENGTH, 1.0 / 9806.65)),
     ],
 )
 def test_units_stand_behind_the_names(tmp_path, specimen, header, factors):
@@ -49,6 +52,30 @@ def test_units_stand_behind_the_names(tmp_path, specimen, header, factors):
     largest = np.abs(specimen[:, 1]).max() * LENGTH
     assert np.abs(loop.moment).max() == pytest.approx(largest, rel=0.01)
     assert loop.flexibility == FLEXIBILITY
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_semicolons_and_tabs_part_the_columns(tmp_path, specimen, separator):
+    path = write(tmp_path / "t.csv", specimen)
+    plain = read_loop(path, length=LENGTH)
+    path.write_text("# a remark, with a comma\n" + path.read_text().replace(",", separator))
+    assert np.array_equal(read_loop(path, length=LENGTH).moment, plain.moment)
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "reason"),
+    [
+        ("displacement_mm;force_kN", "0,5;1,25", "decimal comma; write decimal points"),
+        ("displacement_mm,force_kN", "2001-01-01 00:00:01,1.0", "a date or time of day"),
+        ("displacement_mm,force_tonf", "0.5,1.0", "may be 9.807 kN .metric. or 8.896 kN"),
+        ("displacement_mm,force_kN", "0.5,x", '"x" is no number'),
+    ],
+)
+def test_numbers_and_units_that_are_not_read_are_named(tmp_path, header, row, reason):
+    path = tmp_path / "t.csv"
+    path.write_text(f"{header}\n{row}\n")
+    with pytest.raises(InputError, match=reason):
+        read_loop(path, length=LENGTH)
 
 
 def test_units_can_be_given_beside_the_file(tmp_path, specimen):

@@ -13,7 +13,15 @@ from railquake.inputs.ground_motion import GroundMotion, read_motion
 
 FILES = runpy.run_path(str(Path(__file__).with_name("motion_files.py")))
 TEXTS = (*FILES["SAMPLES"].values(), FILES["csmip"](2), FILES["cosmos"](2), FILES["usc"]())
-VALID = [text.encode() for text in TEXTS]
+AGENCIES = runpy.run_path(str(Path(__file__).with_name("agency_files.py")))
+COUNTED = [
+    *(AGENCIES[name]().encode() for name in ("cosmos", "smc_wide", "dyna", "nsmn", "geonet")),
+    AGENCIES["renadic"]().encode(),
+    AGENCIES["geonet"](corrected=False).encode(),
+    b"a sample\n40 0.01\n" + AGENCIES["fields"](AGENCIES["WAVE"], "{:.6f}", 1).encode(),
+]
+UNCOUNTED = [AGENCIES["knet_csv"]().encode(), AGENCIES["jma_csv"]()]
+VALID = [*(text.encode() for text in TEXTS), *COUNTED]
 PIECES = [
     *(b"nan", b"inf", b"-", b".", b"E", b"1e999", b"9" * 50, b"*" * 15, b"\x00", b"\xff", b"\n"),
     *(b"\r", b" ", b",", b";", b"(", b"[", b"NPTS= 999999999, DT= 1e-300\n", b"units of g\n"),
@@ -79,7 +87,7 @@ def test_arbitrary_columns(tmp_path: Path, content: str, dt: float | None, chann
 @st.composite
 def mutated(draw: st.DrawFn) -> bytes:
     """A valid file with pieces overwritten, inserted, cut out, or its end cut off."""
-    content = draw(st.sampled_from(VALID))
+    content = draw(st.sampled_from([*VALID, *UNCOUNTED]))
     for _ in range(draw(st.integers(1, 3))):
         at = draw(st.integers(0, len(content)))
         how = draw(st.sampled_from(["insert", "overwrite", "cut", "truncate"]))
@@ -107,11 +115,12 @@ def test_mutated_records(
 def test_every_truncation(tmp_path: Path, content: bytes) -> None:
     """A file cut anywhere is refused, or what it lost was not a number."""
     whole = None
-    for length in range(len(content), 0, -23):
+    listed = content.startswith(b"a sample")
+    for length in (*range(len(content), len(content) - 30, -1), *range(len(content), 0, -23)):
         path = tmp_path / "cut"
         path.write_bytes(content[:length])
         try:
-            motion = read_motion(path, channel=1, dt=0.01)
+            motion = read_motion(path, channel=1, dt=0.01, units="gal" if listed else None)
         except InputError:
             continue
         whole = whole or motion.npts

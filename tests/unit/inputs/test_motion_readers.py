@@ -149,7 +149,7 @@ def test_units_of_columns_are_never_guessed(tmp_path: Path) -> None:
 
 
 def test_given_units_must_agree_with_the_file(tmp_path: Path) -> None:
-    path = write(tmp_path, columns())
+    path = write(tmp_path, columns("t (s),a (g)\n"))
     assert read_motion(path, units="G").pga == read_motion(path).pga
     with pytest.raises(InputError, match=r"the file states 'g' but units = 'm/s2' was given"):
         read_motion(path, units="m/s2")
@@ -338,7 +338,7 @@ def test_given_time_step_must_agree_with_the_file(tmp_path: Path) -> None:
     [
         (b"", "the file is empty"),
         (b" \r\n\n", "the file is empty"),
-        (b"PK\x03\x04\x00\x00abc", "binary data"),
+        (b"\x00\x01\x02abc", "binary data"),
         (bytes(range(256)), "binary data"),
         ("t_s,a_g\n0,1\n".encode("utf-16"), "UTF-16"),
         (b"hello\nworld\n", "none of the known formats"),

@@ -17,11 +17,13 @@ from railquake.inputs.profile import (
     builtin_profile,
     face_offset,
     flange_tip,
+    outward_lean,
     point_at_height,
     profile_from_segments,
     read_profile,
     segments_from_table,
 )
+from railquake.inputs.wheelrail import WheelRail
 
 RAIL_HALF = [
     {"kind": "arc", "start": [0, 0], "end": [0.6244, 0.0139], "centre": [0, 14], "radius": 14},
@@ -436,3 +438,95 @@ def test_random_bytes_are_refused_clearly(tmp_path_factory, content, suffix):
     with pytest.raises(InputError) as caught:
         read_profile(path, "wheel")
     assert "\n" not in str(caught.value)
+
+
+# --- a rail that is mirrored; dialects -----------------------------------------------------
+
+
+def canted(lean, *, mirror=False):
+    """60E1, built in with 1:40, turned so that its top leans by so much to the track's middle."""
+    rail = builtin_profile("60e1")
+    lean -= math.atan(1 / 40)
+    sign = -1.0 if mirror else 1.0
+    y, z = (
+        math.cos(lean) * rail.y + math.sin(lean) * rail.z,
+        math.cos(lean) * rail.z - math.sin(lean) * rail.y,
+    )
+    order = slice(None, None, int(sign))
+    return Profile("rail", "canted", sign * y[order], z[order], rail.curvature[order])
+
+
+@pytest.mark.parametrize("lean", [1 / 40, 1 / 30, 1 / 20])
+def test_a_canted_rail_that_is_mirrored_leans_outward(lean):
+    upright = outward_lean(canted(0.0))
+    assert abs(upright) < 1e-3
+    assert outward_lean(canted(lean)) == pytest.approx(-lean, rel=0.15)
+    assert outward_lean(canted(lean, mirror=True)) == pytest.approx(lean, rel=0.15)
+
+
+def test_a_worn_gauge_corner_is_no_lean():
+    """As a worn high rail has it: up to 6 mm off at the top of its gauge face."""
+    rail = canted(0.0)
+    gauge = rail.y < np.median(rail.y)
+    y = rail.y + np.where(gauge, 6e-3 * np.clip(1.0 - rail.z / 0.035, 0.0, 1.0), 0.0) * (
+        rail.z > 0.012
+    )
+    assert outward_lean(Profile("rail", "worn", y, rail.z, rail.curvature)) < 0.0125
+
+
+def test_a_pair_with_a_mirrored_rail_says_so(tmp_path):
+    for mirror in (False, True):
+        rail = canted(1 / 40, mirror=mirror)
+        rows = "".join(
+            f"{1e3 * y:.6f},{1e3 * z:.6f}\n" for y, z in zip(rail.y, rail.z, strict=True)
+        )
+        (tmp_path / "r.csv").write_text("y_mm,z_mm\n" + rows)
+        pair = WheelRail.from_preset("s1002-60e1", {"rail": str(tmp_path / "r.csv")})
+        doubts = pair.doubts()
+        assert bool(doubts) == mirror
+    assert "mirror y" in doubts[0] and "r.csv" in doubts[0]
+    for name in ("bart", "s1002-60e1"):
+        assert WheelRail.from_preset(name).doubts() == ()
+
+
+def rail_text(head, between=","):
+    rail = builtin_profile("60e1")
+    rows = [
+        f"{1e3 * y:.5f}{between}{1e3 * z:.5f}"
+        for y, z in zip(rail.y[::5], rail.z[::5], strict=True)
+    ]
+    return "\n".join([head, *rows]) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("head", "between"),
+    [
+        ("y (mm),z (mm)", ","), ("Y_MM,Z_MM", ","), ("y [mm],z [mm]", ","), ("y mm,z mm", ","),
+        ("y_mm;z_mm", ";"), ("y_mm\tz_mm", "\t"),
+    ],
+)  # fmt: skip
+def test_heads_of_profiles_are_read_however_the_unit_is_written(tmp_path, head, between):
+    (tmp_path / "plain.csv").write_text(rail_text("y_mm,z_mm"))
+    (tmp_path / "other.csv").write_text(rail_text(head, between))
+    plain, other = (read_profile(tmp_path / f"{n}.csv", "rail") for n in ("plain", "other"))
+    np.testing.assert_array_equal(other.y, plain.y)
+    np.testing.assert_array_equal(other.z, plain.z)
+
+
+def test_an_exponent_of_fortran_is_one(tmp_path):
+    (tmp_path / "d.csv").write_text(
+        rail_text("y_mm,z_mm").replace("\n", "D+00\n").replace("z_mmD+00", "z_mm")
+    )
+    (tmp_path / "e.csv").write_text(rail_text("y_mm,z_mm"))
+    d, e = (read_profile(tmp_path / f"{n}.csv", "rail") for n in "de")
+    np.testing.assert_array_equal(d.z, e.z)
+
+
+@pytest.mark.parametrize("number", ["1e308", "-1e308", "9" * 5000, "nan", "1_0", "0x10"])
+def test_a_number_that_no_profile_has_is_one_line(tmp_path, number):
+    (tmp_path / "r.csv").write_text(rail_text("y_mm,z_mm") + f"40,{number}\n")
+    (tmp_path / "r.prr").write_text(f"units.len.f = {number}\npoint.begin\n0 0\n1 1\npoint.end\n")
+    for name in ("r.csv", "r.prr"):
+        with pytest.raises(InputError, match=r", line \d+: ") as error:
+            read_profile(tmp_path / name, "rail")
+        assert len(str(error.value)) < 300 + len(str(tmp_path))

@@ -82,8 +82,6 @@ def test_the_record_is_read_only_on_demand_and_scaled(case):
     assert np.abs(motion.acceleration).max() == pytest.approx(0.181)
     mirrored = loaded.with_changes({"motion.scale": -1.81}).ground_motion()
     np.testing.assert_array_equal(mirrored.acceleration, -motion.acceleration)
-    still = loaded.with_changes({"motion.scale": 0}).ground_motion()
-    assert not still.acceleration.any()
     assert loaded.vertical_motion() is None
     absent = load_scenario(case, ["motion.record=none.AT2"])
     with pytest.raises(InputError, match=r"none\.AT2"):
@@ -242,7 +240,7 @@ def test_round_trip_through_toml(variant, tmp_path):
 
 
 @given(
-    scale=st.floats(-1e6, 1e6),
+    scale=st.floats(-1e6, 1e6).filter(bool),
     speed=st.floats(0, 200),
     length=st.floats(1e-3, 1e3),
     name=st.text(min_size=1, max_size=20),
@@ -350,3 +348,43 @@ def test_a_changed_file_changes_the_hash_and_the_motion(tmp_path):
     assert written(0.125)[1] == pytest.approx(1.25 * first[1])
     assert written(0.125)[0] != first[0]
     assert written(0.1) == first
+
+
+# --- a motion times its factor -------------------------------------------------------------
+
+
+@pytest.mark.parametrize("origin", ["record", "synthetic", "samples", "vertical"])
+def test_a_peak_above_3_g_after_scale_needs_the_same_consent_as_in_the_file(origin, case):
+    made = {
+        "record": load_scenario(case),  # 0.1 m/s2
+        "synthetic": scenario(synthetic={"seed": 3, "pga": "0.1 m/s2"}),
+        "samples": scenario(motion={"acceleration": [0.0, 0.1], "dt": 0.01}),
+        "vertical": scenario(
+            motion={"acceleration": [0.0, 1e-6], "dt": 0.01},
+            vertical=GroundMotion("up", 0.01, [0.0, -0.1]),
+        ),
+    }[origin]
+
+    def peak(scale, consent=False):
+        changed = made.with_changes({"motion.scale": scale, "motion.allow_high_pga": consent})
+        motion = changed.vertical_motion() if origin == "vertical" else changed.ground_motion()
+        return motion.pga / 9.80665
+
+    assert peak(294.0) == pytest.approx(2.998, abs=1e-3)
+    for sign in (1.0, -1.0):
+        with pytest.raises(
+            InputError, match=r"PGA is 3.008 g with scale = -?295, over 3 g; .*allow"
+        ):
+            peak(sign * 295.0)
+        assert peak(sign * 295.0, consent=True) == pytest.approx(3.008, abs=1e-3)
+        for consent in (False, True):
+            with pytest.raises(InputError, match=r"PGA is 102 g .*, over 100 g; lower it$"):
+                peak(sign * 1e4, consent)
+
+
+def test_a_factor_of_zero_is_refused(case):
+    with pytest.raises(InputError, match=r"motion\.scale: must not be 0"):
+        load_scenario(case, ["motion.scale=0"])
+    validated = load_scenario(case).motion
+    with pytest.raises(InputError, match="scale must not be 0"):
+        validated.model_copy(update={"scale": 0.0}).lateral_motion()

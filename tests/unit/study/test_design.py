@@ -84,3 +84,51 @@ def test_a_missing_record_is_named_before_anything_runs(tmp_path):
     no_motion = {key: table for key, table in BASE.items() if key != "motion"}
     with pytest.raises(InputError, match="motion"):
         design({"base": no_motion}).check()
+
+
+# --- factors on the motion ---------------------------------------------------------------------
+
+
+def ladder(**changes):
+    """An incremental analysis of a motion of 0.6 g, the axis of factors between others."""
+    found = tables(
+        **{
+            "vehicle.speed": ["0.01 km/h", "80 km/h"],
+            "motion.scale": [0.5, 5.5, 1.0],
+            "model": MODELS,
+        }
+    )
+    return {**found, **changes}
+
+
+@pytest.mark.parametrize("consent", [False, True])
+def test_factors_of_an_axis_need_consent_above_3_g(consent):
+    base = {**BASE, "motion": {**BASE["motion"], "allow_high_pga": consent}}
+    found = design(ladder(base=base))
+    if consent:
+        found.check()
+        return
+    with pytest.raises(InputError, match=r"row 3: motion .*PGA is 3.3 g with scale = 5.5, over 3"):
+        found.check()
+
+
+def test_levels_of_a_suite_need_consent_above_3_g():
+    study = small()
+    study["suite"]["levels"]["high"] = 3.0
+    with pytest.raises(InputError, match=r"suite: b: motion .*PGA is 3.6 g with scale = 6, over 3"):
+        design(study).check()
+    study["base"] = {**BASE, "motion": {"allow_high_pga": True}}
+    design(study).check()
+
+
+@pytest.mark.parametrize("where", ["list", "variant"])
+def test_a_factor_of_zero_on_an_axis_is_refused(where):
+    axes = {
+        "list": {"motion.scale": [1.0, 0.0]},
+        "variant": {
+            "how": [{"name": "all", "set": {}}, {"name": "no", "set": {"motion.scale": 0}}]
+        },
+    }[where]
+    axes["vehicle.speed"] = ["0.01 km/h", "80 km/h"]
+    with pytest.raises(InputError, match="scale must not be 0"):
+        design(tables(**axes)).check()

@@ -229,7 +229,7 @@ def test_a_stop_leaves_what_has_finished(tmp_path):
 
 def test_batches_stop_when_they_are_told():
     data = tables(**{"motion.synthetic.duration": ["600 s"]})
-    batch = batches.Batch("stop", study(data), None, (0,))
+    batch = batches.Batch("stop", study(data), None, (0,), batches.physics())
     stop = threading.Event()
     threading.Timer(0.5, stop.set).start()
     begin = time.monotonic()
@@ -291,3 +291,30 @@ def test_both_an_executor_and_a_scheduler_are_refused(tmp_path):
         study().run(tmp_path, executor=executor, scheduler="tcp://127.0.0.1:1")
     with pytest.raises(InputError, match="--jobs"):
         study().run(tmp_path, jobs=0)
+
+
+# --- rows that cannot be made ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("dt", ["5e-5 s", "auto"])
+def test_a_row_that_raises_whatever_it_likes_stops_nothing_now_or_later(tmp_path, monkeypatch, dt):
+    def assemble(scenario):
+        if scenario.vehicle.speed == 20.0:
+            raise ZeroDivisionError("of this row alone")
+        return whole(scenario)
+
+    import railquake.assembly
+
+    whole = many.assemble
+    monkeypatch.setattr(many, "assemble", assemble)
+    monkeypatch.setattr(railquake.assembly, "assemble", assemble)
+    monkeypatch.setattr(
+        "railquake.study.plan.critical_time_step",
+        lambda scenario: assemble(scenario.with_step(5e-5)).critical_dt,
+    )
+    data = tables(**{"vehicle.speed": [20.0, 10.0]})
+    data["base"] = {**BASE, "solver": {"dt": dt}}
+    for _ in range(2):  # the second time nothing but that row is left
+        table = study(data).run(tmp_path / "out", jobs=1)
+        assert (table["status"] == "failed").tolist() == [True, False]
+        assert table["error"][0] == "unexpected: ZeroDivisionError: of this row alone"

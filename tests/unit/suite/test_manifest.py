@@ -1,5 +1,6 @@
 """Manifests of suites: what they may say, and what is refused with file, line and column."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from railquake.errors import InputError
 from railquake.inputs.scenario import scenario
 from railquake.suite import load_suite
+from railquake.suite.hazard import read_hazard
 
 HEADER = "file,scale_factor\n"
 
@@ -139,3 +141,13 @@ def test_a_manifest_that_is_none_is_refused(tmp_path: Path) -> None:
 def test_an_unknown_suite_is_refused_with_those_there_are() -> None:
     assert "did you mean paper-suite?" in refused("paper-suit", None)
     assert "known are paper-suite, synthetic-berkeley" in refused("qqq", None)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no such file")
+def test_a_pipe_in_the_place_of_a_file_is_refused_without_waiting(tmp_path: Path):
+    pipe = tmp_path / "pipe.csv"
+    os.mkfifo(pipe)
+    with pytest.raises(InputError, match=r"pipe\.csv: .*no regular file"):
+        load_suite(pipe)
+    with pytest.raises(InputError, match=r"pipe\.csv: .*no regular file"):
+        read_hazard(pipe)

@@ -53,6 +53,21 @@ def test_files_that_are_no_records_are_skipped_and_told(tmp_path: Path) -> None:
         ("RSN1182_CHICHI_CHY006-E.AT2", False),
         ("RSN1106_KOBE_KJM000.AT2", False),
         ("cup.AT2", False),
+        ("RSN139_TABAS_DAY-V1.AT2", True),
+        ("RSN139_TABAS_DAY-T1.AT2", False),
+        ("HL.DLFA..HNZ.D.AT2", True),
+        ("HL.DLFA..HNE.D.AT2", False),
+        ("BK.CMB.BHZ.00", True),
+        ("BK.CMB.BHN.00", False),
+        ("acc_vertical.AT2", True),
+        ("NGNH31.UD2", True),
+        ("NGNH31.EW2", False),
+        ("station_UP.txt", True),
+        ("group.AT2", False),
+        ("STATION V.AT2", False),
+        ("RSN1_V_A-090.AT2", False),
+        ("LEV.AT2", False),
+        ("record.V1", False),
     ],
 )
 def test_vertical_components_are_told_by_the_files_name(
@@ -65,9 +80,57 @@ def test_vertical_components_are_told_by_the_files_name(
     assert skipped == ({name: "vertical component"} if vertical else {})
 
 
+@pytest.mark.parametrize(
+    ("component", "name", "vertical"),
+    [
+        ("UP", "RSN6_ELC180.AT2", True),
+        ("DWN", "RSN6_ELC180.AT2", True),
+        ("V", "RSN6_ELC180.AT2", True),
+        ("180", "RSN6_ELC-UP.AT2", False),
+        ("N90E", "station-V.AT2", False),
+        ("El Centro V", "ELC.AT2", False),
+    ],
+)
+def test_the_header_goes_before_the_files_name(
+    tmp_path: Path, component: str, name: str, vertical: bool
+) -> None:
+    path = write_at2(tmp_path / name, short_motion(1))
+    text = path.read_text().replace("made for a test", f"Imperial Valley, 1/1/1940, X, {component}")
+    path.write_text(text)
+    write_at2(tmp_path / "other.AT2", short_motion(2))
+    taken, _ = kinds(tmp_path)
+    assert (name in taken) is not vertical
+
+
+def test_no_vertical_of_the_agencies_files_is_offered(shared: Path) -> None:
+    components, skipped = find_components(shared / "records" / "formats" / "agencies")
+    vertical = {one.file.rpartition("/")[2] for one in skipped if one.kind == "vertical component"}
+    assert vertical == {
+        "20170720223109_0921.txt.gz",
+        "20180212_211557_WPWS_20.V2A",
+        "NGNH311106302345.UD2",
+        "altohospicio0911131.v1",
+    }
+    several = sorted(
+        (one.file.rpartition("/")[2], one.channel) for one in components if one.channel
+    )
+    assert several == [
+        ("20170720223109_0921.txt.gz", 1),
+        ("20170720223109_0921.txt.gz", 2),
+        ("20180212_211557_WPWS_20.V2A", 1),
+        ("20180212_211557_WPWS_20.V2A", 2),
+        ("altohospicio0911131.v1", 1),
+        ("altohospicio0911131.v1", 2),
+    ]
+
+
 def test_a_file_of_three_channels_gives_its_two_horizontal_ones(shared: Path) -> None:
     components, skipped = find_components(shared / "records" / "formats")
-    channels = [(one.file, one.channel) for one in components if one.channel is not None]
+    channels = [
+        (one.file, one.channel)
+        for one in components
+        if one.channel is not None and "/" not in one.file
+    ]
     assert channels == [("csmip_ce36456p.V2", 1), ("csmip_ce36456p.V2", 3)]
     # of this folder; those below it hold verticals of their own
     vertical = [one.file for one in skipped if one.kind == "vertical component"]

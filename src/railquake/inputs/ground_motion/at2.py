@@ -1,14 +1,17 @@
 """PEER .AT2 files: a few header lines, NPTS and DT, then the values in any layout.
 
-Dialects: any number of header lines; "NPTS= 4000, DT= .0050 SEC," in any case; the older
-"4000 .0050 NPTS, DT"; any line ends; numbers without a leading zero.
+Dialects: any number of header lines; "NPTS= 4000, DT= .0050 SEC," in any case and order; the older
+"4000 .0050 NPTS, DT"; any line ends; numbers without a leading zero; an end mark behind the values.
+The second line ends in the component: an azimuth, or "UP", "DWN", "V".
 """
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from railquake.inputs.ground_motion import units as unit_table
+from railquake.inputs.ground_motion.orientation import vertical_by_label
 from railquake.inputs.ground_motion.text import (
     NUMBER,
     Channel,
@@ -16,7 +19,11 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
+    check_not_cut,
+    cut_token,
     free_numbers,
+    last_tokens,
+    no_marks,
     shown,
     unit_of_file,
 )
@@ -24,12 +31,15 @@ from railquake.inputs.ground_motion.text import (
 HEADER_LINES = 60
 """The line with NPTS and DT is looked for within this many lines."""
 
-_WORDS = re.compile(r"\bnpts\b.*\bdt\b", re.IGNORECASE)
+_WORDS = re.compile(r"\bnpts\b.*\bdt\b|\bdt\b.*\bnpts\b", re.IGNORECASE)
 _NEW = re.compile(
     rf"\bnpts\s*[=:]\s*({NUMBER}).*?\bdt\s*[=:]\s*({NUMBER})\s*([a-z]*)", re.IGNORECASE
 )
+_TURNED = re.compile(
+    rf"\bdt\s*[=:]\s*({NUMBER})\s*([a-z]*)[\s,;]*npts\s*[=:]\s*({NUMBER})", re.IGNORECASE
+)
+_END = re.compile(r"^[\W_]*(?:end\b|eof\b|/&|$)", re.IGNORECASE)
 _OLD = re.compile(rf"^\s*({NUMBER})\s*,?\s+({NUMBER})\s*,?\s*npts\s*,?\s*dt\b", re.IGNORECASE)
-_SHAPE = re.compile(r"^[+-]?[0-9]*\.([0-9]*)(?:[eEdD]([+-]?[0-9]*))?$")
 
 
 def is_at2(record: RecordFile) -> bool:
@@ -39,7 +49,13 @@ def is_at2(record: RecordFile) -> bool:
 
 def at2_channels(record: RecordFile, options: Options) -> list[Channel]:
     """The one channel of an AT2 file."""
-    return [Channel(None, "", lambda: read_at2(record, options))]
+    return [Channel(None, "", lambda: read_at2(record, options), _vertical(record))]
+
+
+def _vertical(record: RecordFile) -> bool | None:
+    """From the last field of the second line, "EARTHQUAKE, date, station, 090"."""
+    fields = record.line(1).split(",") if len(record.lines) > 1 else []
+    return vertical_by_label(fields[-1]) if len(fields) > 2 else None
 
 
 def read_at2(record: RecordFile, options: Options) -> Series:
@@ -54,13 +70,35 @@ def read_at2(record: RecordFile, options: Options) -> Series:
     assert index is not None, "is_at2 comes first"
     npts, dt = _npts_and_dt(record, index, options)
     factor = _factor(record, index, options)
-    values = free_numbers(record, index + 1)
+    stop = _end_of_values(record, index + 1)
+    _no_text_behind(record, index + 1, stop, npts)
+    values = free_numbers(record, index + 1, stop)
+    body = record if stop == len(record.lines) else replace(record, lines=record.lines[:stop])
     if values.size != npts:
-        raise record.fault(_wrong_count(record, npts, int(values.size)))
-    _check_last(record)
+        raise record.fault(_wrong_count(body, npts, int(values.size)))
+    check_not_cut(body, last_tokens(body, index + 1))
+    no_marks(record, values)
     header = "; ".join(line.strip() for line in record.lines[:index] if line.strip())
     notes = (f"header: {header[:200]}",) if header else ()
     return Series(dt, values * factor, notes)
+
+
+def _end_of_values(record: RecordFile, start: int) -> int:
+    """Index behind the last line of values: end marks ("*** End Data ***") are none."""
+    stop = len(record.lines)
+    while stop > start and _END.match(record.lines[stop - 1]):
+        stop -= 1
+    return stop
+
+
+def _no_text_behind(record: RecordFile, start: int, stop: int, npts: int) -> None:
+    """Refuse words behind all the values as what they are, not as damaged numbers."""
+    first = stop
+    while first > start and re.search(r"[A-Za-z]{3}", record.lines[first - 1]):
+        first -= 1
+    if first < stop and sum(len(line.split()) for line in record.lines[start:first]) == npts:
+        text = shown(record.lines[first].strip())
+        raise record.fault(f"the text {text} stands behind the {npts} values; remove it", first)
 
 
 def _header_line(record: RecordFile) -> int | None:
@@ -72,19 +110,22 @@ def _header_line(record: RecordFile) -> int | None:
 
 def _npts_and_dt(record: RecordFile, index: int, options: Options) -> tuple[int, float]:
     line = record.lines[index]
-    match = _NEW.search(line) or _OLD.search(line)
+    match = _NEW.search(line) or _OLD.search(line) or _TURNED.search(line)
     if match is None:
         raise record.fault(
             f"NPTS and DT cannot be read from {shown(line.strip())}; "
             "'NPTS= 4000, DT= .0050 SEC' or '4000 .0050 NPTS, DT' is expected",
             index,
         )
-    count_text, dt_text = match.group(1), match.group(2)
+    count_text, dt_text, unit = {
+        _NEW: lambda: match.group(1, 2, 3),
+        _OLD: lambda: (*match.group(1, 2), ""),
+        _TURNED: lambda: match.group(3, 1, 2),
+    }[match.re]()
     if not re.fullmatch(r"\+?[0-9]{1,9}", count_text) or int(count_text) < 2:
         raise record.fault(
             f"NPTS is {shown(count_text)}; a whole number of at least 2 is needed", index
         )
-    unit = match.group(3) if match.re is _NEW else ""
     factor = unit_table.time_factor(unit) if unit else 1.0
     if factor is None:
         raise record.fault(f"DT is in {shown(unit)}; seconds are expected", index)
@@ -119,37 +160,6 @@ def _wrong_count(record: RecordFile, npts: int, found: int) -> str:
             "correct NPTS, or fetch the record again"
         )
     message = f"NPTS is {npts} and the file has only {found} values"
-    if _cut_token(record) is not None:
+    if cut_token(record) is not None:
         message += f", the last of them cut off (line {len(record.lines)})"
     return message + "; the file is cut off or its header wrong: fetch it again"
-
-
-def _check_last(record: RecordFile) -> None:
-    """A file of the right count may still end inside its last number."""
-    cut = _cut_token(record)
-    if cut is not None:
-        raise record.fault(
-            f"the last value, {shown(cut)}, is cut off; fetch the file again",
-            len(record.lines) - 1,
-        )
-
-
-def _cut_token(record: RecordFile) -> str | None:
-    """The file's last number if it has fewer digits than ten printed alike before it."""
-    tokens = " ".join(record.lines[-13:]).split()[-11:]
-    if len(tokens) < 11:
-        return None
-    shapes = []
-    for token in tokens:
-        match = _SHAPE.match(token)
-        shapes.append(match and (len(match.group(1)), len(match.group(2) or "")))
-    last, before = shapes[-1], set(shapes[:-1])
-    if len(before) != 1 or None in before:
-        return None
-    usual = before.pop()
-    assert usual is not None
-    # Without an exponent, printing often drops trailing zeros: that is no sign of a cut.
-    if usual[1] == 0:
-        return None
-    short = last is None or last[0] < usual[0] or last[1] < usual[1]
-    return tokens[-1] if short else None

@@ -1,7 +1,9 @@
 """Plain text or CSV: time and acceleration in columns, or acceleration alone.
 
-The unit of acceleration comes from the header ("a_g", "acc (m/s2)", "# units: cm/s2") or from
-the caller; the time step from the time column, or from the caller where there is none.
+The unit of acceleration comes from the header ("acc (m/s2)", "acc_cm/s2", "# units: cm/s2") or
+from the caller; that of "a_g" is taken with a remark only, and the caller's goes before it.  The
+time step comes from the time column, else from the header ("dt = 0.01") or the caller.  Columns
+whose first one is no time are components.
 """
 
 from __future__ import annotations
@@ -14,13 +16,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railquake.inputs.ground_motion import units as unit_table
+from railquake.inputs.ground_motion.column_heads import (
+    Heads,
+    read_heads,
+    stated_count,
+    stated_step,
+    stated_unit,
+)
+from railquake.inputs.ground_motion.orientation import vertical_by_label
 from railquake.inputs.ground_motion.text import (
     Channel,
     Options,
     RecordFile,
     Series,
     check_dt,
+    check_not_cut,
     convert,
+    no_marks,
     shown,
     to_float,
     unit_of_file,
@@ -28,9 +40,15 @@ from railquake.inputs.ground_motion.text import (
 
 HEADER_LINES = 200
 """The first row of numbers is looked for within this many lines."""
+COMPONENTS = 3
+"""So many columns without names or a time are components; others are a list of values."""
+MOST_LOOKED_AT, FEWEST_STEPS = 2000, 5
+"""Rows in which a time is looked for, and steps below which nothing can be told."""
+TIME_INCREASES = 0.8
+"""Share of the steps that increase in a column of time, damaged ones included."""
 
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)|\*+", re.IGNORECASE)
-_BRACKETS = re.compile(r"([^()\[\]]*)[(\[]([^()\[\]]*)[)\]]")
+_OTHER_MOTION = re.compile(r"vel(?:oc\w*)?\b|vel_|disp\w*\b|disp_|speed\b", re.IGNORECASE)
 _DECIMAL = re.compile(r"[+-]?[0-9]*\.?([0-9]*)(?:[eEdD]([+-]?[0-9]{1,4}))?")
 
 
@@ -57,52 +75,157 @@ def column_channels(record: RecordFile, options: Options) -> list[Channel]:
     assert start is not None, "first_row comes first"
     separator = _separator(record.lines[start])
     count = len(_split(record.lines[start], separator))
-    names, units = _names_and_units(record, start, count)
-    read = partial(_read, record, options, start, units)
-    if count <= 2:
+    heads = read_heads(record, start, count, lambda line: _split(line, _separator(line)))
+    timed = count > 1 and _has_time(record, start, count, separator, heads)
+    read = partial(_read, record, options, start, heads, timed)
+    if count == 1 or (count == 2 and timed):
         return [Channel(None, "", partial(read, count - 1))]
-    return [Channel(column, names[column], partial(read, column)) for column in range(1, count)]
+    first = 1 if timed else 0
+    return [
+        Channel(
+            column + 1 - first,
+            heads.names[column],
+            partial(read, column),
+            vertical_by_label(heads.names[column]),
+        )
+        for column in range(first, count)
+    ]
+
+
+def _has_time(
+    record: RecordFile, start: int, count: int, separator: str | None, heads: Heads
+) -> bool:
+    """Whether the first column is time: by its name, else by whether it increases.
+
+    Raises
+    ------
+    InputError
+        If it is no time and nothing names the columns: then the rows are a list of values.
+    """
+    if heads.time is not None:
+        return heads.time
+    unnamed = not any(heads.names)
+    rest = len(_split(record.lines[-1], separator))
+    wrapped = count >= COMPONENTS and unnamed and (rest < count or start + 1 == len(record.lines))
+    column = [
+        to_float(fields[0])
+        for line in record.lines[start : start + MOST_LOOKED_AT]
+        if (fields := _split(line, separator))
+    ]
+    numbers = [number for number in column if number is not None]
+    steps = np.diff(np.array(numbers))
+    increases = steps.size > 0 and float(np.mean(steps > 0.0)) >= TIME_INCREASES
+    if not (wrapped and not increases):
+        if steps.size < FEWEST_STEPS or increases:
+            return True
+        if count == COMPONENTS or not unnamed:
+            return False
+    raise record.fault(
+        f"has rows of {count} numbers under no names, and the first of them is no time, as it does "
+        "not increase: a list of values, it seems; write one value on each line and give units "
+        "and dt",
+        start,
+    )
 
 
 def _read(
     record: RecordFile,
     options: Options,
     start: int,
-    units: list[str | None],
+    heads: Heads,
+    timed: bool,
     column: int,
 ) -> Series:
     """Read one column of numbers and the time beside it."""
-    table, rows, first_column = _table(record, start, len(units))
-    if len(table) < 2:
-        raise record.fault("has a single row of numbers; a record needs at least two", start)
-    stated = units[column]
-    if stated is None:
-        header = unit_table.unit_statements(record.lines[:start])
-        stated = header[0] if header else None
-    factor = unit_of_file(record, stated, options)
-    if len(units) == 1:
-        if options.dt is None:
+    table, rows, first_column, last_column = _table(record, start, len(heads.names))
+    _check_numbers(record, start, heads, column, first_column)
+    factor, notes = _factor(record, options, start, heads, column)
+    head = record.lines[:start]
+    check_not_cut(record, last_column)
+    no_marks(record, table[:, column])
+    step = stated_step(head)
+    if not timed:
+        if step is not None:
+            dt = check_dt(record, step[0], options, step[1])
+        elif options.dt is not None:
+            dt = check_dt(record, options.dt, options)
+        else:
             raise record.fault(
-                "has one column and no time; give the time step, dt = 0.01 for example"
+                f"has {'one column' if len(heads.names) == 1 else 'components'} and no time; give "
+                "the time step, dt = 0.01 for example"
             )
-        return Series(check_dt(record, options.dt, options), table[:, 0] * factor)
-    notes: tuple[str, ...] = ()
+        if len(heads.names) > 1:
+            notes += (f"{len(heads.names)} columns without a time: each taken for a component",)
+        return Series(dt, table[:, column] * factor, notes)
     to_seconds: float | None = 1.0
-    if units[0] is None:
+    if heads.units[0] is None:
         notes += ("the header states no unit of time: seconds taken",)
     else:
-        to_seconds = unit_table.time_factor(units[0])
+        to_seconds = unit_table.time_factor(heads.units[0])
     if to_seconds is None:
         raise record.fault(
-            f"the first column is in {shown(str(units[0]))}; time in s is expected there",
+            f"the first column is in {shown(str(heads.units[0]))}; time in s is expected there",
             start - 1,
         )
     dt = to_seconds * _time_step(record, table[:, 0], rows, first_column)
     dt = check_dt(record, _short(dt), options)
+    if step is not None and abs(step[0] - dt) > 0.01 * dt:
+        raise record.fault(
+            f"states a time step of {step[0]:g} s, and the time column has {dt:g} s; correct one",
+            step[1],
+        )
     begin = float(table[0, 0]) * to_seconds
     if abs(begin) > 1.5 * dt:
         notes += (f"the file's time starts at {begin:g} s, the motion's at 0",)
     return Series(dt, table[:, column] * factor, notes)
+
+
+def _check_numbers(
+    record: RecordFile, start: int, heads: Heads, column: int, first_column: Sequence[str]
+) -> None:
+    """That there are as many numbers as the file says, and of an acceleration."""
+    rows = len(first_column)
+    if rows < 2:
+        raise record.fault("has a single row of numbers; a record needs at least two", start)
+    if _OTHER_MOTION.match(heads.names[column]):
+        raise record.fault(
+            f"the column {shown(heads.names[column])} holds no acceleration; choose another", start
+        )
+    if len(heads.names) == 1 and first_column[0] == str(rows - 1):
+        raise record.fault(
+            f"its first value, {first_column[0]}, is the number of those that follow; remove it, "
+            f"or write '{first_column[0]} DT' there",
+            start,
+        )
+    count = stated_count(record.lines[:start])
+    if count is not None and count[0] != rows:
+        raise record.fault(
+            f"announces {count[0]} values and has {rows}; the file is cut off or its header "
+            "wrong: fetch it again",
+            count[1],
+        )
+
+
+def _factor(
+    record: RecordFile, options: Options, start: int, heads: Heads, column: int
+) -> tuple[float, tuple[str, ...]]:
+    """Factor to m/s2 of a column, and a remark where its unit is not certain."""
+    stated, name = heads.units[column], heads.names[column]
+    if stated is not None and heads.certain[column]:
+        return unit_of_file(record, stated, options), ()
+    written = stated_unit(record, start)
+    if written is not None or stated is None:
+        return unit_of_file(record, written, options), ()
+    if options.units is not None:
+        remark = (
+            f"the unit {options.units} given is used; the column's name {shown(name)} says none"
+        )
+        return unit_of_file(record, None, options), (remark,)
+    remark = (
+        f"unit {stated} taken from the column's name {shown(name)}, which may mean something else: "
+        "give units to be sure"
+    )
+    return unit_of_file(record, stated, options), (remark,)
 
 
 def _separator(line: str) -> str | None:
@@ -116,8 +239,8 @@ def _separator(line: str) -> str | None:
 def _split(line: str, separator: str | None) -> list[str]:
     """Fields of a line; a separator at the very end ends the last field."""
     if separator is None:
-        return line.split()
-    fields = [field.strip() for field in line.split(separator)]
+        return line.replace('"', " ").split()
+    fields = [field.strip().strip('"').strip() for field in line.split(separator)]
     if len(fields) > 1 and not fields[-1]:
         fields.pop()
     return fields
@@ -125,18 +248,23 @@ def _split(line: str, separator: str | None) -> list[str]:
 
 def _table(
     record: RecordFile, start: int, count: int
-) -> tuple[NDArray[np.float64], list[int], list[str]]:
-    """All rows: the numbers (rows, count), the line of each row, and the first column as text."""
+) -> tuple[NDArray[np.float64], list[int], list[str], list[str]]:
+    """All rows: the numbers (rows, count), the line of each, first and last column as text."""
     separator = _separator(record.lines[start])
     block = record.lines[start:]
-    if separator is not None and {line.count(separator) for line in block} == {count - 1}:
+    quoted = any('"' in line for line in block)
+    if (
+        separator is not None
+        and not quoted
+        and {line.count(separator) for line in block} == {count - 1}
+    ):
         # The usual CSV, in one go: the numbers may keep the blanks around them.
         tokens = separator.join(block).split(separator)
         rows = list(range(start, len(record.lines)))
     else:
         tokens, rows = _ragged(record, start, count, separator)
     values = convert(record, tokens, _LineOfRow(rows, count))
-    return values.reshape(len(rows), count), rows, tokens[::count]
+    return values.reshape(len(rows), count), rows, tokens[::count], tokens[count - 1 :: count]
 
 
 def _ragged(
@@ -224,36 +352,3 @@ def _last_digit(token: str) -> float:
 def _short(dt: float) -> float:
     """`dt` without the rounding noise of the division that made it."""
     return float(f"{dt:.10g}")
-
-
-def _names_and_units(
-    record: RecordFile, start: int, count: int
-) -> tuple[list[str], list[str | None]]:
-    """Names and units of the columns from the last line above the numbers that fits."""
-    for index in range(start - 1, -1, -1):
-        line = record.lines[index].strip().strip("#%/!").strip()
-        if not line:
-            continue
-        bracketed = _BRACKETS.findall(line)
-        if len(bracketed) == count:
-            names = [name.strip(" \t,;:\"'") for name, _ in bracketed]
-            return names, [unit.strip() or None for _, unit in bracketed]
-        fields = [field.strip("\"'") for field in _split(line, _separator(line))]
-        if len(fields) == count:
-            return fields, [_unit_of_name(field) for field in fields]
-        break
-    return [""] * count, [None] * count
-
-
-def _unit_of_name(name: str) -> str | None:
-    """The unit in a column's name: in brackets, or what follows an underscore."""
-    match = _BRACKETS.search(name)
-    if match:
-        return match.group(2).strip() or None
-    parts = name.split("_")
-    for first in range(1, len(parts)):
-        unit = "_".join(parts[first:])
-        known = unit_table.acceleration_factor(unit) or unit_table.time_factor(unit)
-        if known is not None:
-            return unit
-    return None

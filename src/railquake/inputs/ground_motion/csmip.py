@@ -12,6 +12,7 @@ from functools import partial
 
 import numpy as np
 
+from railquake.inputs.ground_motion.orientation import vertical_by_label
 from railquake.inputs.ground_motion.text import (
     NUMBER,
     Channel,
@@ -69,7 +70,12 @@ def csmip_channels(record: RecordFile, options: Options) -> list[Channel]:
         if match:
             number, label = _number_and_label(record, begin, index)
             channels.append(
-                Channel(number, label, partial(_read, record, options, begin, index, match))
+                Channel(
+                    number,
+                    label,
+                    partial(_read, record, options, begin, index, match),
+                    vertical_by_label(label),
+                )
             )
     if not channels:
         raise record.fault(

@@ -11,6 +11,7 @@ import re
 
 import numpy as np
 
+from railquake.inputs.ground_motion.orientation import vertical_by_label
 from railquake.inputs.ground_motion.text import (
     NUMBER,
     Channel,
@@ -27,6 +28,8 @@ from railquake.inputs.ground_motion.text import (
 HEADER_LINES = 17
 NAME_WIDTH = 18
 
+# KiK-net numbers its components: 1 to 3 in the borehole, 4 to 6 at the surface, NS, EW, UD.
+_DIRECTIONS = {"1": False, "2": False, "3": True, "4": False, "5": False, "6": True}
 _SCALE = re.compile(rf"({NUMBER})\s*\(([^)]*)\)\s*/\s*({NUMBER})")
 _RATE = re.compile(rf"({NUMBER})\s*Hz", re.IGNORECASE)
 _LENGTH = re.compile(rf"({NUMBER})")
@@ -41,7 +44,11 @@ def is_knet(record: RecordFile) -> bool:
 def knet_channels(record: RecordFile, options: Options) -> list[Channel]:
     """The one channel of a K-NET file."""
     values = _header(record)[0]
-    return [Channel(None, values.get("dir.", ""), lambda: read_knet(record, options))]
+    direction = values.get("dir.", "")
+    vertical = _DIRECTIONS.get(direction)
+    if vertical is None:
+        vertical = vertical_by_label(direction)
+    return [Channel(None, direction, lambda: read_knet(record, options), vertical)]
 
 
 def read_knet(record: RecordFile, options: Options) -> Series:

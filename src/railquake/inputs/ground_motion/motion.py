@@ -17,6 +17,10 @@ MAX_SAMPLES = 50_000_000
 """More samples than this (0.4 GB) are taken for a slip of the pen, not for a record."""
 
 
+DOUBTS = ("unit ", "the unit ", "the header gives a peak", "the agency flags")
+"""How the notes begin that `GroundMotion.doubts` passes on."""
+
+
 @dataclass(frozen=True, eq=False)
 class GroundMotion:
     """One component of ground acceleration at a constant time step.
@@ -156,6 +160,13 @@ class GroundMotion:
         if self.pga > 0.0 and peak < 0.999 * self.pga:
             remark += f", PGA lowered by {100.0 * (1.0 - peak / self.pga):.1f} %"
         return replace(self, dt=dt, acceleration=new, notes=(*self.notes, remark))
+
+    def doubts(self) -> tuple[str, ...]:
+        """The notes that tell of something to look into, before the record is trusted.
+
+        A unit taken from a column's name, a peak that is not the header's, an agency's flag.
+        """
+        return tuple(note for note in self.notes if note.startswith(DOUBTS))
 
     def baseline_check(self) -> tuple[str, ...]:
         """Warnings about a drifting baseline; empty when there is nothing to say.

@@ -9,14 +9,30 @@ from pathlib import Path
 
 import numpy as np
 
-from railquake.inputs.ground_motion import at2, columns, cosmos, csmip, knet, smc, usc
+from railquake.inputs.ground_motion import (
+    at2,
+    columns,
+    cosmos,
+    csmip,
+    dyna,
+    geonet,
+    jma_csv,
+    knet,
+    knet_csv,
+    listed,
+    nsmn,
+    renadic,
+    smc,
+    usc,
+)
 from railquake.inputs.ground_motion.motion import STANDARD_GRAVITY, GroundMotion
+from railquake.inputs.ground_motion.opening import open_record
+from railquake.inputs.ground_motion.other_files import not_a_record, why_no_numbers
 from railquake.inputs.ground_motion.text import (
     Channel,
     Options,
     RecordFile,
     one_line,
-    open_record,
     shown,
 )
 
@@ -38,11 +54,18 @@ class _Format:
 # In this order: the sharper marks first, columns of numbers last.
 _FORMATS = (
     _Format("K-NET", knet.is_knet, knet.knet_channels),
+    _Format("K-NET CSV", knet_csv.is_knet_csv, knet_csv.knet_csv_channels),
+    _Format("JMA CSV", jma_csv.is_jma_csv, jma_csv.jma_csv_channels),
     _Format("COSMOS", cosmos.is_cosmos, cosmos.cosmos_channels),
     _Format("USGS SMC", smc.is_smc, smc.smc_channels),
     _Format("USC Volume 1", usc.is_usc, usc.usc_channels),
+    _Format("RENADIC Volume 1", renadic.is_renadic, renadic.renadic_channels),
+    _Format("ESM/AFAD DYNA", dyna.is_dyna, dyna.dyna_channels),
+    _Format("AFAD three columns", nsmn.is_nsmn, nsmn.nsmn_channels),
+    _Format("GeoNet V1A/V2A", geonet.is_geonet, geonet.geonet_channels),
     _Format("CSMIP V2", csmip.is_csmip, csmip.csmip_channels),
     _Format("PEER AT2", at2.is_at2, at2.at2_channels),
+    _Format("list of values", listed.is_listed, listed.listed_channels),
     _Format("columns", lambda r: columns.first_row(r) is not None, columns.column_channels),
 )
 
@@ -60,10 +83,13 @@ class RecordContents:
         One of `FORMATS`.
     channels : tuple of (int or None, str)
         Number and label of each channel; a file of one component may give neither.
+    vertical : tuple of (bool or None)
+        Whether the header says that each is a vertical component; None where it does not tell.
     """
 
     format: str
     channels: tuple[tuple[int | None, str], ...]
+    vertical: tuple[bool | None, ...] = ()
 
 
 def record_contents(path: str | os.PathLike[str]) -> RecordContents:
@@ -77,7 +103,11 @@ def record_contents(path: str | os.PathLike[str]) -> RecordContents:
     record = open_record(path)
     entry = _format_of(record)
     found = entry.channels(record, Options())
-    return RecordContents(entry.name, tuple((channel.number, channel.label) for channel in found))
+    return RecordContents(
+        entry.name,
+        tuple((channel.number, channel.label) for channel in found),
+        tuple(channel.vertical for channel in found),
+    )
 
 
 def read_motion(
@@ -93,8 +123,10 @@ def read_motion(
     Parameters
     ----------
     path : path
-        PEER AT2, CSMIP/CESMD V2, COSMOS v1.20, USGS SMC, K-NET, USC Volume 1 (only with `dt`),
-        or plain columns (time and acceleration, blanks, tabs, commas or semicolons).
+        PEER AT2, CSMIP/CESMD V2, COSMOS v1.20, USGS SMC, K-NET and KiK-net (also as CSV), JMA CSV,
+        ESM/ITACA and AFAD (DYNA 1.2), AFAD in three columns, GeoNet V1A and V2A, RENADIC, USC
+        Volume 1 (only with `dt`), "NPTS DT" and a list of values, or plain columns (time and
+        acceleration, blanks, tabs, commas or semicolons); each also compressed as .gz.
     channel : int or str, optional
         Which component of a file with several: its number in the file, or its label ("UP").
         Columns of a table are counted from 1 behind the time column, or named.
@@ -138,7 +170,8 @@ def read_motion(
         )
         limit = (POSSIBLE_PGA if allow_high_pga else PLAUSIBLE_PGA) / STANDARD_GRAVITY
         raise record.fault(f"PGA is {peak / STANDARD_GRAVITY:.4g} g, over {limit:g} g; {remedy}")
-    name = one_line(Path(path).stem)
+    plain = Path(path).name.removesuffix(".gz")
+    name = one_line(Path(plain).stem)
     if chosen.title:
         name = one_line(f"{name} {chosen.title}")
     notes = (f"format: {entry.name}", *series.notes)
@@ -162,20 +195,22 @@ def _given_dt(record: RecordFile, dt: float | None) -> float | None:
 
 
 def _format_of(record: RecordFile) -> _Format:
-    if record.lines[0].lstrip().upper().startswith("UNCORRECTED ACCELEROGRAM") and not usc.is_usc(
-        record
-    ):
-        raise record.fault(
-            "is an uncorrected (Volume 1) accelerogram, which is not read; use the corrected one "
-            "(Volume 2, .V2)"
-        )
+    marked = not_a_record(record)
+    if marked is not None:
+        raise record.fault(marked)
     for entry in _FORMATS:
+        uncorrected = entry.name in ("CSMIP V2", "PEER AT2", "list of values", "columns")
+        if uncorrected and record.lines[0].lstrip().upper().startswith("UNCORRECTED ACCELEROGRAM"):
+            raise record.fault(
+                "is an uncorrected (Volume 1) accelerogram of a layout that is not read; use the "
+                "corrected one (Volume 2, .V2)"
+            )
         if entry.detect(record):
             return entry
-    raise record.fault(
-        f"is none of the known formats ({', '.join(FORMATS)}): no header that tells the time "
-        "step and no row of numbers was found"
+    reason = why_no_numbers(record) or (
+        "no header that tells the time step and no row of numbers was found"
     )
+    raise record.fault(f"is none of the known formats ({', '.join(FORMATS)}): {reason}")
 
 
 def _choose(record: RecordFile, channels: list[Channel], wanted: int | str | None) -> Channel:

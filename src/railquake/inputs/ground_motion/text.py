@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from railquake.errors import InputError
 from railquake.inputs.ground_motion import units as unit_table
-
-MAX_BYTES = 512 * 1024 * 1024
-"""A larger file is refused before it is read: no strong-motion record comes near it."""
-
-MAX_LINE = 4096
-"""Longest line, characters; it bounds the work of the header's regular expressions."""
 
 LARGEST = 1e100
 """A larger number is taken for damage; sums and squares of the others cannot overflow."""
@@ -28,7 +20,7 @@ NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eEdD][+-]?[0-9]+)?"
 
 _OF_NUMBERS = b"0123456789eEdD.+- \t"
 _NOT_IN_NUMBERS = re.compile(r"[^0-9eEdD.+\- \t]")
-_CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")
+_SHAPE = re.compile(r"^[+-]?[0-9]*\.([0-9]*)(?:[eEdD]([+-]?[0-9]*))?$")
 
 
 @dataclass(frozen=True)
@@ -62,11 +54,14 @@ class Channel:
         What the file calls it ("90 DEG", "UP").
     read : callable
         Returns the `Series`, or raises `InputError`.
+    vertical : bool or None
+        Whether the header says that it is a vertical component; None where it does not tell.
     """
 
     number: int | None
     label: str
     read: Callable[[], Series]
+    vertical: bool | None = None
 
     @property
     def title(self) -> str:
@@ -111,62 +106,6 @@ def one_line(message: str) -> str:
 def shown(token: str) -> str:
     """A piece of a file, short enough for a message."""
     return f"'{token}'" if len(token) <= 32 else f"'{token[:29]}...'"
-
-
-def open_record(path: str | os.PathLike[str]) -> RecordFile:
-    """Read a text file whole.
-
-    Raises
-    ------
-    InputError
-        If it is missing, not a regular file, not readable, empty, binary or far too large.
-    """
-    name = one_line(str(path))
-    try:
-        place = Path(path)
-        if not place.exists():
-            raise InputError(f"{name}: there is no such file; check the path")
-        if place.is_dir():
-            raise InputError(f"{name}: is a folder; name one record file in it")
-        if not place.is_file():
-            raise InputError(f"{name}: is not a regular file")
-        if place.stat().st_size > MAX_BYTES:
-            raise InputError(f"{name}: over {MAX_BYTES // 2**20} MiB, too large for a record")
-        data = place.read_bytes()
-    except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(one_line(f"{name}: cannot be read ({reason})")) from None
-    data = data.rstrip(b"\x1a")  # DOS end-of-file mark of old records
-    if not data.strip():
-        raise InputError(f"{name}: the file is empty; fetch it again")
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise InputError(f"{name}: UTF-16 text; save it as plain text (UTF-8)")
-    if _CONTROL.search(data):
-        raise InputError(
-            f"{name}: holds binary data, not text; unpack it, or export the record as text"
-        )
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")  # older headers: degree signs, accents
-    # Not str.splitlines: it also breaks lines at characters that headers may hold.
-    text = text.replace("\r\n", "\n").replace("\r", "\n").replace("\x0c", " ")
-    lines = text.split("\n")
-    while lines and not lines[-1].strip():
-        lines.pop()
-    if not lines:
-        raise InputError(f"{name}: the file is empty; fetch it again")
-    record = RecordFile(name, lines)
-    longest = max(range(len(lines)), key=lambda index: len(lines[index]))
-    if len(lines[longest]) > MAX_LINE:
-        raise record.fault(
-            f"has {len(lines[longest])} characters, over {MAX_LINE}; this is not a record of "
-            "lines: put a few values on each",
-            longest,
-        )
-    return record
 
 
 def bad_number(token: str) -> str:
@@ -361,3 +300,105 @@ def peak_note(peak: float, stated: float, unit: str, resolution: float) -> tuple
     if abs(abs(stated) - peak) <= max(0.01 * peak, resolution):
         return ()
     return (f"the header gives a peak of {abs(stated):g} {unit}, the data have {peak:g} {unit}",)
+
+
+def key_values(lines: Sequence[str]) -> dict[str, str]:
+    """Header lines "KEY : value" by key in lower case; the first of two alike counts."""
+    entries: dict[str, str] = {}
+    for line in lines:
+        key, colon, value = line.partition(":")
+        if colon:
+            entries.setdefault(" ".join(key.lower().split()), value.strip())
+    return entries
+
+
+def whole_number(record: RecordFile, text: str, name: str, line: int | None = None) -> int:
+    """A count of at least two that a header states."""
+    if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) < 2:
+        raise record.fault(
+            f"the header's {name} is {shown(text)}; a whole number of at least 2 is needed", line
+        )
+    return int(text)
+
+
+MARKS = (999.0, 9999.0, 99999.0, 999999.0, 999.9, 9999.9, 32768.0)
+"""What stands for missing values, in size; they are no measurements in any unit."""
+
+
+def no_marks(record: RecordFile, values: NDArray[np.float64]) -> None:
+    """Refuse values, in the file's unit, among which marks of missing ones stand.
+
+    A value such as -999 is a mark where it follows another or is twice all others.
+    """
+    size = np.abs(values)
+    marked = np.isin(size, MARKS)
+    if not marked.any():
+        return
+    others = float(np.max(size[~marked])) if not marked.all() else 0.0
+    places = np.flatnonzero(marked & ((size > 2.0 * others) | np.append(False, marked[:-1])))
+    if places.size:
+        raise record.fault(
+            f"sample {int(places[0]) + 1} is {values[places[0]]:g}, a mark of a missing value: the "
+            "record has a gap; fill or cut it first"
+        )
+
+
+def cut_token(record: RecordFile) -> str | None:
+    """The file's last number if it has fewer digits than ten printed alike before it."""
+    tokens = " ".join(record.lines[-13:]).split()[-11:]
+    if len(tokens) < 11:
+        return None
+    shapes = []
+    for token in tokens:
+        match = _SHAPE.match(token)
+        shapes.append(match and (len(match.group(1)), len(match.group(2) or "")))
+    last, before = shapes[-1], set(shapes[:-1])
+    if len(before) != 1 or None in before:
+        return None
+    usual = before.pop()
+    assert usual is not None
+    # Without an exponent, printing often drops trailing zeros: that is no sign of a cut.
+    if usual[1] == 0:
+        return None
+    short = last is None or last[0] < usual[0] or last[1] < usual[1]
+    return tokens[-1] if short else None
+
+
+FEWEST_ALIKE, MOST_ALIKE = 20, 2000
+"""So many numbers of as many decimals show that trailing zeros are not dropped."""
+
+
+def cut_decimal(tokens: Sequence[str]) -> str | None:
+    """The last number if it has fewer decimals than all before it, which have equally many."""
+    shapes = [_SHAPE.match(token) for token in tokens[-MOST_ALIKE:]]
+    if len(shapes) <= FEWEST_ALIKE or any(shape is None for shape in shapes[:-1]):
+        return None
+    usual = {(len(shape.group(1)), shape.group(2)) for shape in shapes[:-1] if shape}
+    (decimals, power), *others = usual
+    if others or power is not None or decimals == 0:
+        return None
+    last = shapes[-1]
+    short = last is None or (last.group(2) is None and len(last.group(1)) < decimals)
+    return tokens[-1] if short else None
+
+
+def check_not_cut(record: RecordFile, tokens: Sequence[str]) -> None:
+    """Refuse a last number that has fewer digits than those before it.
+
+    A zero on a line of its own is a whole one: it was appended to see free vibration.
+    """
+    last = record.lines[-1].split()
+    if len(last) == 1 and to_float(last[0]) == 0.0:
+        return
+    cut = cut_token(record) or cut_decimal(tokens)
+    if cut is not None:
+        raise record.fault(
+            f"the last value, {shown(cut)}, is cut off; fetch the file again",
+            len(record.lines) - 1,
+        )
+
+
+def last_tokens(record: RecordFile, start: int) -> list[str]:
+    """The numbers of the last lines from line `start` on, as text."""
+    first = max(start, len(record.lines) - MOST_ALIKE)
+    return [token for line in record.lines[first:] for token in line.split()]

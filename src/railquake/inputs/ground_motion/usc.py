@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+from numpy.typing import NDArray
 
 from railquake.inputs.ground_motion.motion import MAX_SAMPLES
 from railquake.inputs.ground_motion.text import (
@@ -69,6 +70,32 @@ def read_usc(record: RecordFile, options: Options) -> Series:
     start = last + 1 + lines_used(INTEGERS, INTEGERS_PER_LINE) + lines_used(REALS, REALS_PER_LINE)
     pairs = fixed_numbers(record, start, 2 * count, FIELD_WIDTH, indent=1).reshape(count, 2)
     time, values = pairs[:, 0], pairs[:, 1]
+    return resampled_pairs(record, time, values, factor, options.dt)
+
+
+def resampled_pairs(
+    record: RecordFile,
+    time: NDArray[np.float64],
+    values: NDArray[np.float64],
+    factor: float,
+    dt: float,
+) -> Series:
+    """Uneven samples at even steps, by straight lines, which is noted.
+
+    Parameters
+    ----------
+    record : RecordFile
+        For messages.
+    time : ndarray, shape (n,)
+        s.
+    values : ndarray, shape (n,)
+        In the file's unit.
+    factor : float
+        To m/s2.
+    dt : float
+        Step to resample to, s.
+    """
+    count = len(time)
     steps = np.diff(time)
     wrong = np.flatnonzero((steps <= 0.0) | (steps > LONGEST_STEP))
     if wrong.size:
@@ -78,14 +105,14 @@ def read_usc(record: RecordFile, options: Options) -> Series:
             "a gap or a damaged line"
         )
     length = float(time[-1] - time[0])
-    if length / options.dt > MAX_SAMPLES:
-        raise record.fault(f"dt = {options.dt:g} s would make over {MAX_SAMPLES} samples")
-    even = np.arange(int(np.floor(length / options.dt + 1e-9)) + 1) * options.dt
+    if length / dt > MAX_SAMPLES:
+        raise record.fault(f"dt = {dt:g} s would make over {MAX_SAMPLES} samples")
+    even = np.arange(int(np.floor(length / dt + 1e-9)) + 1) * dt
     resampled = np.interp(even, time - time[0], values)
     before, after = float(np.max(np.abs(values))), float(np.max(np.abs(resampled)))
     notes = (
         "uncorrected Volume 1 data: no baseline or instrument correction",
-        f"resampled from {count} uneven samples to dt = {options.dt:g} s (linear); "
+        f"resampled from {count} uneven samples to dt = {dt:g} s (linear); "
         f"PGA {before * factor:.5g} m/s2 before, {after * factor:.5g} m/s2 after",
     )
-    return Series(options.dt, resampled * factor, notes)
+    return Series(dt, resampled * factor, notes)

@@ -23,6 +23,7 @@ from railquake.inputs.profile.shape import (
     ProfileKind,
     face_offset,
     flange_tip,
+    outward_lean,
     point_at_height,
 )
 from railquake.inputs.profile.standards import BUILTIN_PROFILES, builtin_profile
@@ -38,6 +39,7 @@ __all__ = [
     "builtin_profile",
     "face_offset",
     "flange_tip",
+    "outward_lean",
     "point_at_height",
     "profile_from_segments",
     "read_profile",

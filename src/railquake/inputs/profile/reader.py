@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railquake.errors import InputError
+from railquake.files import read_file
 from railquake.inputs.profile.shape import Profile, ProfileKind
+from railquake.inputs.units import number_of
+from railquake.messages import reason
 
 _FloatArray = NDArray[np.float64]
 _Header = dict[str, tuple[str, int]]  # by key: what is written, and the line that it stands on
@@ -27,10 +31,15 @@ MAX_FILE_BYTES = 10_000_000
 # A wheel or rail head is some 70 to 150 mm wide; anything else is a wrong unit.
 WIDTH_RANGE = (0.02, 0.5)
 MAX_LENGTH = 2.0
+LARGEST_NUMBER = 1e9  # of a profile's file, whatever it is: products of larger ones may overflow
 # A rail's working part, where the outline must not fold under itself, ends this far below the
 # crown; a wheel's begins at the flange tip.
 WORKING_DEPTH = 0.014
 _CSV_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254}
+# y_mm, y mm, y (mm), y [mm]; capitals mean nothing
+_HEAD = re.compile(
+    r"(?P<axis>[A-Za-z]+)(?:\s*[_\s]\s*(?P<unit>[^\s\[(].*)|\s*_?[\[(](?P<in_brackets>.*)[\])])?"
+)
 
 
 @dataclass(frozen=True)
@@ -58,8 +67,9 @@ def read_profile(
         SIMPACK: ``!`` begins a comment, ``key = value`` lines, points between ``point.begin``
         and ``point.end``, lengths divided by ``units.len.f``; ``mirror.y`` and ``mirror.z`` are
         carried out.  After that, ``y`` must point outward and ``z`` down.
-        CSV: a header naming ``y`` and ``z`` with units (``y_mm,z_mm``; m, cm, mm, in, inch), then
-        one point a line, ``y`` outward, ``z`` down; lines that begin with ``#`` are comments.
+        CSV: a header naming ``y`` and ``z`` with units (``y_mm,z_mm`` or ``y (mm),z (mm)``; m,
+        cm, mm, in, inch), then one point a line, ``y`` outward, ``z`` down, with commas,
+        semicolons or tabs between; lines that begin with ``#`` are comments.
     kind : {"wheel", "rail"}
         What the file must hold.
     spacing : float
@@ -103,12 +113,12 @@ def read_profile(
 
 def _read_text(path: Path) -> str:
     try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise InputError(f"{path}: larger than {MAX_FILE_BYTES // 1_000_000} MB; not a profile")
-        return path.read_text(encoding="utf-8-sig", errors="replace")
+        data = read_file(path, MAX_FILE_BYTES)
     except OSError as error:
-        reason = error.strerror or "cannot be read"
-        raise InputError(f"{path}: {reason}; check the name of the profile file") from None
+        raise InputError(f"{path}: {reason(error)}; check the name of the profile file") from None
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise InputError(f"{path}: UTF-16 text; save it as plain text (UTF-8)")
+    return data.decode("utf-8-sig", errors="replace")
 
 
 def _parse_simpack(path: Path, text: str, kind: ProfileKind) -> _Table:
@@ -198,10 +208,10 @@ def _simpack_unit(path: Path, header: _Header) -> float:
         raise InputError(
             f"{path}: units.len.f is missing; it gives the lengths per metre (mm: 1000)"
         )
-    if units <= 0.0:
+    if units < 1.0 / LARGEST_NUMBER:
         raise InputError(
             f"{path}, line {header['units.len.f'][1]}: units.len.f is {units:g}; "
-            "it must be positive"
+            f"it must be {'positive' if units <= 0.0 else 'the lengths per metre (mm: 1000)'}"
         )
     return units
 
@@ -215,15 +225,17 @@ def _header_number(path: Path, header: _Header, key: str) -> float | None:
 
 def _parse_csv(path: Path, text: str) -> _Table:
     columns: tuple[int, int] | None = None
-    scales = (1.0, 1.0)
+    scales, between = (1.0, 1.0), ","
     rows: list[tuple[float, float]] = []
     lines: list[int] = []
     for number, raw in enumerate(text.splitlines(), start=1):
         line = raw.strip()
         if not line or line.startswith("#"):
             continue
+        if columns is None:
+            between = next((mark for mark in ";\t" if mark in line), ",")
         try:
-            fields = [field.strip() for field in next(csv.reader([line]))]
+            fields = [field.strip() for field in next(csv.reader([line], delimiter=between))]
         except (csv.Error, StopIteration):
             raise InputError(f"{path}, line {number}: not a line of a CSV file") from None
         if columns is None:
@@ -246,13 +258,16 @@ def _csv_header(
     columns: list[int] = []
     scales: list[float] = []
     for axis in ("y", "z"):
-        found = [i for i, field in enumerate(fields) if field.split("_", 1)[0].lower() == axis]
+        heads = [_HEAD.fullmatch(field) for field in fields]
+        found = [i for i, head in enumerate(heads) if head and head["axis"].lower() == axis]
         if len(found) != 1:
             raise InputError(
                 f"{path}, line {number}: no table of points; the header must name one {axis} "
                 "column with its unit, such as y_mm,z_mm"
             )
-        _, _, unit = fields[found[0]].partition("_")
+        head = heads[found[0]]
+        assert head is not None  # it was found
+        unit = (head["unit"] or head["in_brackets"] or "").strip().lower()
         if unit not in _CSV_UNITS:
             given = f'has the unit "{unit}"' if unit else "has no unit"
             raise InputError(
@@ -265,14 +280,15 @@ def _csv_header(
 
 
 def _number(path: Path, line: int, text: str) -> float:
-    try:
-        if "_" in text:  # Python would read 1_0 as 10
-            raise ValueError
-        value = float(text)
-    except ValueError:
-        raise InputError(f'{path}, line {line}: "{text[:40]}" is not a number') from None
+    value = number_of(text)
+    if value is None:
+        raise InputError(f'{path}, line {line}: "{text[:40]}" is not a number')
     if not math.isfinite(value):
         raise InputError(f'{path}, line {line}: "{text[:40]}" is not a finite number')
+    if abs(value) > LARGEST_NUMBER:
+        raise InputError(
+            f'{path}, line {line}: "{text[:40]}" is beyond any profile; the file is damaged'
+        )
     return value
 
 

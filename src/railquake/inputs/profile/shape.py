@@ -12,6 +12,9 @@ from railquake.errors import InputError
 
 ProfileKind = Literal["wheel", "rail"]
 
+_FACE_DEPTHS = (0.015, 0.0175, 0.02, 0.0225, 0.025, 0.0275)  # where a head's faces are steep [m]
+_CROWN_HALF_WIDTH = 0.01
+
 
 @dataclass(frozen=True, eq=False)
 class Profile:
@@ -198,3 +201,45 @@ def face_offset(rail_profile: Profile, depth: float = 0.014) -> float:
     if rail_profile.kind != "rail":
         raise InputError(f"profile {rail_profile.name}: a wheel has no gauge face; give a rail")
     return point_at_height(rail_profile, float(rail_profile.z.min()) + depth, "gauge")
+
+
+def outward_lean(rail_profile: Profile) -> float:
+    """How far a rail's head leans away from the track's middle.
+
+    Parameters
+    ----------
+    rail_profile : Profile
+        A rail.
+
+    Returns
+    -------
+    float
+        Radians, positive where its top leans outward, as that of a canted rail does whose outline
+        is mirrored; the smaller of what the middle between both faces and what the running
+        surface shows, so that wear on one side is not taken for it.  0 where the outline does not
+        show both, or they contradict each other.
+
+    Raises
+    ------
+    InputError
+        If it is a wheel.
+    """
+    if rail_profile.kind != "rail":
+        raise InputError(f"profile {rail_profile.name}: a wheel has no head; give a rail")
+    top = float(rail_profile.z.min())
+    try:
+        middles = [
+            0.5 * sum(point_at_height(rail_profile, top + d, side) for side in ("gauge", "field"))
+            for d in _FACE_DEPTHS
+        ]
+    except InputError:  # it ends above
+        return 0.0
+    of_faces = -float(np.polyfit(_FACE_DEPTHS, middles, 1)[0])
+    y, z = rail_profile.y, rail_profile.z
+    crown = (np.abs(y - middles[0]) < _CROWN_HALF_WIDTH) & (z < top + _FACE_DEPTHS[0])
+    if crown.sum() < 3:
+        return 0.0
+    of_crown = float(np.polyfit(y[crown], z[crown], 1)[0])
+    if of_faces * of_crown <= 0.0:
+        return 0.0
+    return min(of_faces, of_crown, key=abs)

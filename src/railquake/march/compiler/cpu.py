@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gc
+import hashlib
 import os
+import pickle
 import re
 from collections.abc import Callable
 from functools import cache
@@ -11,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
-from railquake.march.compiler.cache import source_hash
+from railquake.march.compiler.cache import drop, keep, kept, source_hash
 from railquake.march.compiler.target import Target
 
 __all__ = [
@@ -286,7 +288,10 @@ def _instructions() -> dict[str, Law]:
 
 def _keep_on_disk(dispatcher: Any, folder: Path) -> None:
     """Give the dispatcher an on-disk cache in ``folder``, which the variant alone names."""
-    from numba.core import caching
+    import numba
+    from numba.core import caching, serialize
+
+    dumps: Any = serialize.dumps
 
     class Locator(caching._CacheLocator):
         def __init__(self, py_file: str) -> None:
@@ -309,16 +314,38 @@ def _keep_on_disk(dispatcher: Any, folder: Path) -> None:
         _locator_classes = [Locator]  # type: ignore[list-item]  # noqa: RUF012
 
     class VariantCache(caching.FunctionCache):
+        """One file for a signature, and no index: what is read is checked first."""
+
         _impl_class = Implementation
 
         def _index_key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
             # The stock key hashes the entry's closure and bytecode, but not the laws bound to its
             # globals; the folder's name covers those.
-            return signature, codegen.magic_tuple()
+            return numba.__version__, signature, codegen.magic_tuple()
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return  # an unwritable cache costs a compilation in each process, nothing more
+        def _file(self, key: tuple[Any, ...]) -> Path:
+            digest = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+            return folder / f"{self._impl.filename_base}.{digest}.nbc"
+
+        def _load_overload(self, signature: Any, context: Any) -> Any:
+            key = self._index_key(signature, context.codegen())
+            content = kept(self._file(key))
+            if content is None:
+                return None
+            try:
+                found, data = pickle.loads(content)
+                return self._impl.rebuild(context, data) if found == key else None
+            except Exception:  # whatever another version of a library makes of it
+                drop(self._file(key))
+                return None
+
+        def _save_overload(self, signature: Any, data: Any) -> None:
+            if self._impl.check_cachable(data):
+                key = self._index_key(signature, data.codegen)
+                keep(self._file(key), dumps((key, self._impl.reduce(data))))
+
+        def flush(self) -> None:
+            """Nothing to empty: there is no index."""
+
     variant: Any = VariantCache
     dispatcher._cache = variant(dispatcher.py_func)
