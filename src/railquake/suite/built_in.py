@@ -8,7 +8,7 @@ from importlib import resources
 from pathlib import Path
 
 from railquake.errors import InputError
-from railquake.suite.manifest import Row, is_file, read_rows, suite_of_rows
+from railquake.suite.manifest import SuiteRow, is_file, read_rows, suite_of_rows
 from railquake.suite.model import Suite, SuiteMember
 
 __all__ = ["PAPER_SUITE", "SYNTHETIC_SUITE", "paper_suite", "synthetic_suite"]
@@ -57,7 +57,7 @@ def paper_suite(records: Path | None) -> Suite:
     return suite_of_rows(PAPER_SUITE, rows, records, _missing)
 
 
-def _found(row: Row, records: Path) -> Row:
+def _found(row: SuiteRow, records: Path) -> SuiteRow:
     """The row, with the name that its record has in the folder."""
     if is_file(records / row.file):
         return row
@@ -72,11 +72,11 @@ def _found(row: Row, records: Path) -> Row:
             except InputError:
                 continue  # the row stays without its record, which is then named
             if abs(motion.pga - pga) <= SAME_PGA * pga:
-                return Row(row.place, file, row.scale_factor, row.cells | {"name": row.label})
+                return SuiteRow(row.place, file, row.scale_factor, row.cells | {"name": row.label})
     return row
 
 
-def _missing(rows: list[Row], count: int, records: Path) -> str:
+def _missing(rows: list[SuiteRow], count: int, records: Path) -> str:
     first = rows[0]
     others = f" ({len(rows)} of {count} are missing)" if len(rows) > 1 else ""
     what = f"RSN {first.cells['rsn']}, {first.cells['event']}, {first.cells['station']}"

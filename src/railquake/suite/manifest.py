@@ -14,9 +14,9 @@ from railquake.files import read_file
 from railquake.messages import no_folder, unreadable
 from railquake.suite.model import Suite, SuiteMember
 from railquake.suite.peer import is_search_report, search_rows
-from railquake.suite.rows import Row, positive_number
+from railquake.suite.rows import SuiteRow, positive_number
 
-__all__ = ["Row", "is_file", "read_manifest", "read_rows", "suite_of_rows"]
+__all__ = ["SuiteRow", "is_file", "read_manifest", "read_rows", "suite_of_rows"]
 
 REQUIRED = ("file", "scale_factor")
 """Columns that every manifest has; others that are not known here are left alone."""
@@ -59,7 +59,7 @@ def read_manifest(path: Path, records: Path | None) -> Suite:
     return suite_of_rows(path.stem, rows, records or path.parent)
 
 
-def read_rows(text: str, where: str) -> tuple[Row, ...]:
+def read_rows(text: str, where: str) -> tuple[SuiteRow, ...]:
     """The rows of a manifest, each checked by itself.
 
     Parameters
@@ -87,7 +87,7 @@ def read_rows(text: str, where: str) -> tuple[Row, ...]:
     for column in header:
         if column and header.count(column) > 1:
             raise InputError(f"{where}, line {number}: column {column!r} is there twice")
-    rows: list[Row] = []
+    rows: list[SuiteRow] = []
     for number, cells in lines:
         place = f"{where}, line {number}"
         if len(cells) != len(header):
@@ -117,7 +117,7 @@ def _lines(text: str, where: str) -> Iterator[tuple[int, list[str]]]:
         raise InputError(f"{where}, line {reader.line_num}: is no CSV: {error}") from None
 
 
-def _row(cells: dict[str, str], place: str) -> Row:
+def _row(cells: dict[str, str], place: str) -> SuiteRow:
     file = cells["file"]
     if not file or not file.isprintable():
         raise InputError(f"{place}: file: a record's file is needed, found {file!r}")
@@ -132,14 +132,14 @@ def _row(cells: dict[str, str], place: str) -> Row:
                 f"{place}: rsn: is {int(wanted)}, but the file is called {file}; "
                 "correct one of them"
             )
-    return Row(place, file, factor, {key: text for key, text in cells.items() if key and text})
+    return SuiteRow(place, file, factor, {key: text for key, text in cells.items() if key and text})
 
 
 def suite_of_rows(
     name: str,
-    rows: tuple[Row, ...],
+    rows: tuple[SuiteRow, ...],
     records: Path,
-    missing: Callable[[list[Row], int, Path], str] | None = None,
+    missing: Callable[[list[SuiteRow], int, Path], str] | None = None,
 ) -> Suite:
     """Find each row's record in the folder.
 
@@ -147,7 +147,7 @@ def suite_of_rows(
     ----------
     name : str
         Of the suite.
-    rows : tuple of Row
+    rows : tuple of SuiteRow
         Its members.
     records : Path
         Folder that relative files start from.
@@ -162,7 +162,7 @@ def suite_of_rows(
     if not records.is_dir():
         raise no_folder(records, "give the one that holds the records")
     motions: list[dict[str, Any]] = []
-    seen: dict[tuple[object, ...], Row] = {}
+    seen: dict[tuple[object, ...], SuiteRow] = {}
     for row in rows:
         path = (records / row.file).absolute()
         key = (path.resolve(), row.cells.get("channel"))
@@ -193,7 +193,7 @@ def is_file(path: str | Path) -> bool:
         return False
 
 
-def _missing(missing: list[Row], count: int, records: Path) -> str:
+def _missing(missing: list[SuiteRow], count: int, records: Path) -> str:
     first = missing[0]
     others = f" ({len(missing)} of {count} are missing)" if len(missing) > 1 else ""
     return (
@@ -202,7 +202,7 @@ def _missing(missing: list[Row], count: int, records: Path) -> str:
     )
 
 
-def _reading(row: Row) -> dict[str, Any]:
+def _reading(row: SuiteRow) -> dict[str, Any]:
     """What a row says about reading its file, as in ``[motion]``."""
     table: dict[str, Any] = {key: row.cells[key] for key in READER if key in row.cells}
     if table.get("channel", "").isdigit():
@@ -212,7 +212,7 @@ def _reading(row: Row) -> dict[str, Any]:
     return table
 
 
-def _labels(rows: tuple[Row, ...]) -> list[str]:
+def _labels(rows: tuple[SuiteRow, ...]) -> list[str]:
     """A name for each row: its own, its file's, or with folder and channel where that is not it."""
     labels = [row.label for row in rows]
     for fuller in (

@@ -14,7 +14,7 @@ import re
 from pathlib import Path
 
 from railquake.errors import InputError
-from railquake.suite.rows import Row, positive_number
+from railquake.suite.rows import SuiteRow, positive_number
 
 __all__ = ["is_search_report", "search_rows"]
 
@@ -31,7 +31,7 @@ def is_search_report(text: str) -> bool:
     return SUMMARY in text[:20_000].lower()
 
 
-def search_rows(text: str, where: str) -> tuple[Row, ...]:
+def search_rows(text: str, where: str) -> tuple[SuiteRow, ...]:
     """Both horizontal components of each record, with the record's scale factor.
 
     Parameters
@@ -43,7 +43,7 @@ def search_rows(text: str, where: str) -> tuple[Row, ...]:
 
     Returns
     -------
-    tuple of Row
+    tuple of SuiteRow
 
     Raises
     ------
@@ -61,7 +61,7 @@ def search_rows(text: str, where: str) -> tuple[Row, ...]:
     for column in (RSN, FACTOR, FILE):
         if column not in header:
             raise InputError(f"{where}, line {start + 1}: column {column!r} is missing")
-    rows: list[Row] = []
+    rows: list[SuiteRow] = []
     for number, line in enumerate(lines[start + 1 :], start + 2):
         if not line.strip(' ,;"'):
             break
@@ -80,7 +80,7 @@ def _cells(line: str, separator: str) -> list[str]:
     return cells
 
 
-def _record(cells: list[str], header: list[str], place: str) -> list[Row]:
+def _record(cells: list[str], header: list[str], place: str) -> list[SuiteRow]:
     # A comma in a name may have made two cells of one: count from either end.
     files = cells[-FILES_AT_END:]
     if len(cells) < len(header) or not all(_NAME.fullmatch(file) for file in files[:-1]):
@@ -97,5 +97,5 @@ def _record(cells: list[str], header: list[str], place: str) -> list[Row]:
             raise InputError(
                 f"{place}: record sequence number: is {number}, but the file is called {file}"
             )
-        rows.append(Row(place, file, factor, {"rsn": number, "file": file}))
+        rows.append(SuiteRow(place, file, factor, {"rsn": number, "file": file}))
     return rows

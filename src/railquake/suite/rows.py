@@ -8,11 +8,11 @@ from pathlib import Path
 
 from railquake.errors import InputError
 
-__all__ = ["Row", "positive_number"]
+__all__ = ["SuiteRow", "positive_number"]
 
 
 @dataclass(frozen=True)
-class Row:
+class SuiteRow:
     """One row of a manifest.
 
     Parameters
