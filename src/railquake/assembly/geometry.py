@@ -12,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 from railquake.errors import InputError
 from railquake.laws import CREEP_LAWS
 from railquake.march.compiler import SCALAR, bind, cache_folder, source_hash
-from railquake.march.compiler.cache import check_compiler, keep, kept
+from railquake.march.compiler.cache import keep, kept
 from railquake.memory import Bounded
 from railquake.physics.contact_table import FIELDS, Axis, RunningCircle, axis_nodes, fill_table
 from railquake.physics.hertz import hertz_table
@@ -208,7 +208,6 @@ def _kept(digest: str, size: int, fill: Callable[[Array], None]) -> Array:
     content = kept(path)
     if content is not None and len(content) == size * np.dtype(np.float64).itemsize:
         return np.frombuffer(content).copy()  # for the compiler one that is read only is another
-    check_compiler()
     table = np.empty(size)
     fill(table)
     keep(path, table.tobytes())

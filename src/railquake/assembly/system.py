@@ -35,7 +35,6 @@ from railquake.inputs.ground_motion.motion import cumulative_trapezoid, without_
 from railquake.inputs.identity import files_of
 from railquake.march import frames
 from railquake.march.compiler import CUDA, SCALAR, Kernel, Target, bind
-from railquake.march.compiler.cache import check_compiler
 from railquake.march.rows import Layout, layout_of
 from railquake.march.slots import chosen, joining, solving
 from railquake.memory import Bounded
@@ -152,8 +151,6 @@ class System:
         laws = chosen({**self.choices, "engine": engine})
         laws.update(joining(self.vehicle.joints.joined))
         laws.update(solving(self.structure.hinge, linearised, abreast=not alone))
-        if target.compiled:
-            check_compiler()
         return bind(
             entries[engine], target, laws, _layout(self.structure, self.vehicle, target.lanes)
         )

@@ -28,8 +28,7 @@ from railquake.suite import SUITES, Suite, SuiteMember, load_suite
 __all__ = ["AUTO", "FILE", "MADE_BY", "StudyInputs"]
 
 AUTO = "auto"  # a time step that is chosen for the study
-# What a study's folder notes of the program that made its rows, in words.
-MADE_BY = {"railquake": "railquake", "physics": "physics"}
+MADE_BY = ("railquake", "physics")  # what a study's folder notes of what made its rows
 _SECTIONS = ("base", "suite", "axes", "sampling")
 _CASE = Place((Scenario,))
 # An axis' name is the path of an input: what excludes each other in a case does so here, too.

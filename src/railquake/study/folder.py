@@ -140,9 +140,9 @@ class ResultsFolder:
                 f"--out {self.path}: holds another study; {'; '.join(differences[:4])}{more}; "
                 "take another folder, or change the study back"
             )
-        for key, words in MADE_BY.items():
+        for key in MADE_BY:
             if None not in (former[key], now[key]) and former[key] != now[key]:
-                notify(f"rows in {self.path} were made by {words} {former[key]}, new ones by "
+                notify(f"rows in {self.path} were made by {key} {former[key]}, new ones by "
                        f"{now[key]}; for rows of one kind take another folder")  # fmt: skip
 
     def made_by(self) -> dict[str, str]:

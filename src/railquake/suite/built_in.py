@@ -8,7 +8,8 @@ from importlib import resources
 from pathlib import Path
 
 from railquake.errors import InputError
-from railquake.suite.manifest import SuiteRow, is_file, read_rows, suite_of_rows
+from railquake.files import is_file
+from railquake.suite.manifest import SuiteRow, read_rows, suite_of_rows
 from railquake.suite.model import Suite, SuiteMember
 
 __all__ = ["PAPER_SUITE", "SYNTHETIC_SUITE", "paper_suite", "synthetic_suite"]

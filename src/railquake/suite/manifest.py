@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from railquake.errors import InputError
-from railquake.files import read_file
+from railquake.files import is_file, read_file
 from railquake.messages import no_folder, unreadable
 from railquake.suite.model import Suite, SuiteMember
 from railquake.suite.peer import is_search_report, search_rows
 from railquake.suite.rows import SuiteRow, positive_number
 
-__all__ = ["SuiteRow", "is_file", "read_manifest", "read_rows", "suite_of_rows"]
+__all__ = ["SuiteRow", "read_manifest", "read_rows", "suite_of_rows"]
 
 REQUIRED = ("file", "scale_factor")
 """Columns that every manifest has; others that are not known here are left alone."""
@@ -183,14 +183,6 @@ def suite_of_rows(
             for label, motion, row in zip(_labels(rows), motions, rows, strict=True)
         ),
     )
-
-
-def is_file(path: str | Path) -> bool:
-    """Whether there is such a file; False for a name that no file can have."""
-    try:
-        return Path(path).is_file()
-    except (OSError, ValueError):
-        return False
 
 
 def _missing(missing: list[SuiteRow], count: int, records: Path) -> str:

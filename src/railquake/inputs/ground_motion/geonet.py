@@ -20,6 +20,7 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
+    first_match,
     fixed_numbers,
     lines_used,
     no_marks,
@@ -60,7 +61,8 @@ def geonet_channels(record: RecordFile, options: Options) -> list[Channel]:
         zip(starts, [*starts[1:], len(record.lines)], strict=True), 1
     ):
         text = record.lines[start : start + TEXT_LINES]
-        label = next((match.group(1) for line in text if (match := _COMPONENT.match(line))), "")
+        component = first_match(_COMPONENT, text)
+        label = component.group(1) if component else ""
         channels.append(
             Channel(
                 number,
@@ -77,7 +79,7 @@ def _read(record: RecordFile, options: Options, start: int, stop: int) -> Series
     text = "\n".join(lines)
     points = _POINTS.search(text)
     count = whole_number(record, points.group(1) if points else "", "Number of points", start)
-    peak = next((match for line in lines if (match := _PEAK.match(line))), None)
+    peak = first_match(_PEAK, lines)
     if peak is None:
         raise record.fault("the header lacks 'Acceleration: peak ... mm/s/s'", start)
     factor = unit_of_file(record, peak.group(2), options)

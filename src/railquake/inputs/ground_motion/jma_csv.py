@@ -19,6 +19,7 @@ from railquake.inputs.ground_motion.text import (
     check_dt,
     check_not_cut,
     convert,
+    first_match,
     no_marks,
     unit_of_file,
 )
@@ -68,8 +69,7 @@ def _names(record: RecordFile) -> tuple[int, list[str]] | None:
 
 def _read(record: RecordFile, options: Options, index: int, number: int, width: int) -> Series:
     header = record.lines[:index]
-    rate = next((match for line in header if (match := _RATE.match(line))), None)
-    unit = next((match for line in header if (match := _UNIT.match(line))), None)
+    rate, unit = first_match(_RATE, header), first_match(_UNIT, header)
     if rate is None or not float(rate.group(1)) > 0.0:
         raise record.fault("the header's SAMPLING RATE cannot be read; '100Hz' is an example")
     dt = check_dt(record, 1.0 / float(rate.group(1)), options)

@@ -49,6 +49,8 @@ class _Format:
     name: str
     detect: Callable[[RecordFile], bool]
     channels: Callable[[RecordFile, Options], list[Channel]]
+    uncorrected: bool = True
+    """Whether it may be that of a file headed as uncorrected (Volume 1)."""
 
 
 # In this order: the sharper marks first, columns of numbers last.
@@ -63,10 +65,15 @@ _FORMATS = (
     _Format("ESM/AFAD DYNA", dyna.is_dyna, dyna.dyna_channels),
     _Format("AFAD three columns", nsmn.is_nsmn, nsmn.nsmn_channels),
     _Format("GeoNet V1A/V2A", geonet.is_geonet, geonet.geonet_channels),
-    _Format("CSMIP V2", csmip.is_csmip, csmip.csmip_channels),
-    _Format("PEER AT2", at2.is_at2, at2.at2_channels),
-    _Format("list of values", listed.is_listed, listed.listed_channels),
-    _Format("columns", lambda r: columns.first_row(r) is not None, columns.column_channels),
+    _Format("CSMIP V2", csmip.is_csmip, csmip.csmip_channels, uncorrected=False),
+    _Format("PEER AT2", at2.is_at2, at2.at2_channels, uncorrected=False),
+    _Format("list of values", listed.is_listed, listed.listed_channels, uncorrected=False),
+    _Format(
+        "columns",
+        lambda r: columns.first_row(r) is not None,
+        columns.column_channels,
+        uncorrected=False,
+    ),
 )
 
 FORMATS = tuple(entry.name for entry in _FORMATS)
@@ -198,9 +205,9 @@ def _format_of(record: RecordFile) -> _Format:
     marked = not_a_record(record)
     if marked is not None:
         raise record.fault(marked)
+    headed = record.lines[0].lstrip().upper().startswith("UNCORRECTED ACCELEROGRAM")
     for entry in _FORMATS:
-        uncorrected = entry.name in ("CSMIP V2", "PEER AT2", "list of values", "columns")
-        if uncorrected and record.lines[0].lstrip().upper().startswith("UNCORRECTED ACCELEROGRAM"):
+        if headed and not entry.uncorrected:
             raise record.fault(
                 "is an uncorrected (Volume 1) accelerogram of a layout that is not read; use the "
                 "corrected one (Volume 2, .V2)"

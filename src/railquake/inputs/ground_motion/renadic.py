@@ -21,6 +21,7 @@ from railquake.inputs.ground_motion.text import (
     RecordFile,
     Series,
     check_dt,
+    first_match,
     fixed_numbers,
     lines_used,
     no_marks,
@@ -63,7 +64,7 @@ def renadic_channels(record: RecordFile, options: Options) -> list[Channel]:
     for start, line in enumerate(record.lines):
         if _FIRST.match(line):
             text = record.lines[start : start + HEADER_LINES]
-            found = next((match for line in text if (match := _CHANNEL.match(line))), None)
+            found = first_match(_CHANNEL, text)
             number = int(found.group(1)) if found else len(channels) + 1
             label = found.group(2) if found else ""
             read = partial(_read, record, options, start)

@@ -302,6 +302,11 @@ def peak_note(peak: float, stated: float, unit: str, resolution: float) -> tuple
     return (f"the header gives a peak of {abs(stated):g} {unit}, the data have {peak:g} {unit}",)
 
 
+def first_match(pattern: re.Pattern[str], lines: Sequence[str]) -> re.Match[str] | None:
+    """What a pattern finds in the first line that holds it."""
+    return next((match for line in lines if (match := pattern.search(line))), None)
+
+
 def key_values(lines: Sequence[str]) -> dict[str, str]:
     """Header lines "KEY : value" by key in lower case; the first of two alike counts."""
     entries: dict[str, str] = {}

@@ -18,6 +18,7 @@ from railquake.inputs.ground_motion.text import (
     Options,
     RecordFile,
     Series,
+    first_match,
     fixed_numbers,
     lines_used,
     unit_of_file,
@@ -59,8 +60,7 @@ def read_usc(record: RecordFile, options: Options) -> Series:
         )
     header = record.lines[:40]
     last = next((i for i, line in enumerate(header) if _LAST_TEXT.search(line)), None)
-    points = next((match for line in header if (match := _POINTS.search(line))), None)
-    units = next((match for line in header if (match := _UNITS.search(line))), None)
+    points, units = first_match(_POINTS, header), first_match(_UNITS, header)
     if last is None or points is None:
         raise record.fault("the header lacks 'NO. OF POINTS' or 'RMS ACCLN.'")
     factor = unit_of_file(record, units.group(1) if units else None, options)

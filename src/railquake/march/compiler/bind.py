@@ -18,7 +18,13 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from railquake.march.compiler import cpu, cuda
-from railquake.march.compiler.cache import HOUSE, cache_folder, code_hash, source_hash
+from railquake.march.compiler.cache import (
+    HOUSE,
+    cache_folder,
+    check_compiler,
+    code_hash,
+    source_hash,
+)
 from railquake.march.compiler.target import CUDA, Target
 from railquake.march.rows import USUAL, Layout, Numbers
 
@@ -70,6 +76,11 @@ def bind(
     Returns
     -------
     Kernel
+
+    Raises
+    ------
+    InputError
+        If the environment keeps the compiler from working.
     """
     chosen = tuple((_label(slot), _label(law)) for slot, law in (laws or {}).items())
     rows = USUAL if layout is None else layout
@@ -107,6 +118,8 @@ class _Held:
 def _bind_cached(
     entry: Law, target: Target, key: str, laws: Mapping[Law, Law], held: _Held
 ) -> Kernel:
+    if target.compiled:
+        check_compiler()
     rebuilt = _rebuild(entry, target, laws, held.layout, {})
     if target is CUDA:
         return Kernel(cuda.launcher(rebuilt), None)
